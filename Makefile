@@ -1,0 +1,156 @@
+# libaset: `make help` lists the targets.
+.DEFAULT_GOAL := all
+
+VERSION := $(shell sed -n 's/^\#define ASET_VERSION "\(.*\)"/\1/p' include/aset/config.h)
+SOVERSION := $(firstword $(subst ., ,$(VERSION)))
+PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
+BUILD ?= build
+
+CC ?= cc
+AR ?= ar
+CFLAGS ?= -O2 -g
+# No contraction: pictures and counts are the same on every machine only if a * b + c is rounded twice everywhere.
+STRICT := -std=c99 -Wall -Wextra -pedantic -Wconversion -Wshadow -Wmissing-prototypes -ffp-contract=off -Iinclude -Ilib
+POSIX := -D_POSIX_C_SOURCE=200809L
+PNG_CFLAGS = $(shell pkg-config --cflags libpng)
+PNG_LIBS = $(shell pkg-config --libs libpng)
+CMOCKA_CFLAGS = $(shell pkg-config --cflags cmocka)
+CMOCKA_LIBS = $(shell pkg-config --libs cmocka)
+
+CORE := $(wildcard lib/base/*.c lib/scene/*.c lib/space/*.c lib/approx/*.c lib/trace/*.c)
+LOAD := $(wildcard lib/load/*.c)
+PROCEDURAL := $(wildcard lib/procedural/*.c)
+TOOL := $(wildcard tools/*.c)
+TESTS := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
+EXAMPLES := $(patsubst examples/%.c,%,$(wildcard examples/*.c))
+objects = $(patsubst %.c,$(BUILD)/$(2)/%.o,$(1))
+
+CORE_A := $(BUILD)/libaset.a
+LOAD_A := $(BUILD)/libaset_load.a
+PROCEDURAL_A := $(BUILD)/libaset_procedural.a
+ARCHIVES := $(PROCEDURAL_A) $(LOAD_A) $(CORE_A)
+SHARED := $(BUILD)/libaset.so.$(VERSION)
+
+all: $(ARCHIVES) $(SHARED) $(BUILD)/aset examples ## build everything: libraries, tool, examples
+
+$(BUILD)/obj/tools/%.o: EXTRA = $(POSIX) $(PNG_CFLAGS)
+$(BUILD)/obj/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) $(EXTRA) -MMD -MP -c $< -o $@
+$(BUILD)/pic/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) -fPIC -MMD -MP -c $< -o $@
+
+$(CORE_A): $(call objects,$(CORE),obj)
+$(LOAD_A): $(call objects,$(LOAD),obj)
+$(PROCEDURAL_A): $(call objects,$(PROCEDURAL),obj)
+$(ARCHIVES):
+	@rm -f $@
+	$(AR) rcs $@ $^
+
+$(SHARED): $(call objects,$(CORE) $(LOAD) $(PROCEDURAL),pic)
+	$(CC) $(CFLAGS) $(LDFLAGS) -shared -Wl,-soname,libaset.so.$(SOVERSION) -o $@ $^ -lm
+
+$(BUILD)/aset: $(call objects,$(TOOL),obj) $(ARCHIVES)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(PNG_LIBS) -lpthread -lm
+
+# --- examples: each is one file and the libraries, with the public headers only ---
+
+$(BUILD)/examples/%: examples/%.c $(wildcard examples/*.h) $(ARCHIVES)
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) -ffp-contract=off -Iinclude $(PNG_CFLAGS) \
+	  -o $@ $< $(ARCHIVES) $(PNG_LIBS) -lm
+
+examples: $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## build the examples
+
+# --- tests ---
+
+TOOL_TESTABLE := $(call objects,$(filter-out tools/aset.c,$(TOOL)),obj)
+$(BUILD)/tests/%: tests/%.c $(wildcard tests/support/*) $(TOOL_TESTABLE) $(ARCHIVES)
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(CMOCKA_CFLAGS) -Itests -Itools -MMD -MP -o $@ $< \
+	  $(wildcard tests/support/*.c) $(TOOL_TESTABLE) $(ARCHIVES) $(CMOCKA_LIBS) $(PNG_LIBS) -lpthread -lm
+
+test: $(addprefix $(BUILD)/tests/,$(TESTS)) $(BUILD)/aset all check-layers check-link check-readme ## run the tests, in under two minutes
+	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
+	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
+	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi; echo "all tests passed"
+
+test-long: $(BUILD)/aset ## MSET against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)
+	bash tests/long.sh $(BUILD)/aset $(BUILD)/long
+
+test-sanitize: ## the tests once more with the address and undefined-behaviour sanitizers
+	$(MAKE) BUILD=$(BUILD)/sanitize CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all" test
+
+test-double: ## the tests once more in double precision
+	$(MAKE) BUILD=$(BUILD)/double CPPFLAGS="-DASET_REAL_BITS=64" test
+
+check-layers: ## who includes whom, as DESIGN.md says
+	@bash tests/layers.sh
+
+check-link: $(CORE_A) ## the core's undefined symbols, and that other layout switches do not link
+	@bash tests/link.sh $(BUILD) "$(CC)"
+
+check-readme: $(ARCHIVES) ## the README's program is examples/smallest.c
+	@bash tests/readme.sh
+
+check-valgrind: $(BUILD)/aset examples ## the demo's programs under valgrind
+	bash tests/valgrind.sh $(BUILD)
+
+werror: ## everything without a single warning
+	$(MAKE) BUILD=$(BUILD)/werror CFLAGS="-O2 -Werror" all $(addprefix $(BUILD)/werror/tests/,$(TESTS))
+
+size: ## bytes of code of the core: all of it, and the smallest useful sets
+	@bash tools/size.sh "$(CC)" $(BUILD)/size
+
+# --- demo: pictures to look at ---
+
+demo: $(BUILD)/aset $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## draw gears, tetra and snow, exact and approximate, into build/demo
+	bash tools/demo.sh $(BUILD)/aset $(BUILD)/demo
+
+hp9000: $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## draw the paper's figures within its bytes into build/hp9000
+	@mkdir -p $(BUILD)/hp9000
+	$(BUILD)/examples/hp9000_snow $(BUILD)/hp9000
+	$(BUILD)/examples/hp9000_gears $(BUILD)/hp9000
+	$(BUILD)/examples/hp9000_moon $(BUILD)/hp9000
+
+prices: $(BUILD)/aset ## the README's price list: bytes, time, dB
+	@bash tools/prices.sh $(BUILD)/aset $(BUILD)/prices
+
+pictures: hp9000 ## draw the pictures of the docs anew
+	@mkdir -p docs
+	cp $(BUILD)/hp9000/snow-30.png docs/snow.png
+
+# --- installing ---
+
+deps: ## install what is missing: compiler, make, pkg-config, libpng, cmocka
+	bash tools/deps.sh
+
+$(BUILD)/libaset.pc: Makefile include/aset/config.h
+	@mkdir -p $(@D)
+	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' 'Name: libaset' \
+	  'Description: approximate ray tracing in a memory budget fixed at compile time' 'Version: $(VERSION)' \
+	  'Libs: -L$${libdir} -laset_procedural -laset_load -laset -lm' 'Cflags: -I$${includedir}' > $@
+
+install: $(ARCHIVES) $(SHARED) $(BUILD)/aset $(BUILD)/libaset.pc ## install under DESTDIR/PREFIX
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/include/aset
+	install -m 755 $(BUILD)/aset $(DESTDIR)$(PREFIX)/bin/aset
+	install -m 644 include/aset/*.h $(DESTDIR)$(PREFIX)/include/aset
+	install -m 644 $(ARCHIVES) $(DESTDIR)$(LIBDIR)
+	install -m 755 $(SHARED) $(DESTDIR)$(LIBDIR)
+	ln -sf libaset.so.$(VERSION) $(DESTDIR)$(LIBDIR)/libaset.so.$(SOVERSION)
+	ln -sf libaset.so.$(SOVERSION) $(DESTDIR)$(LIBDIR)/libaset.so
+	install -m 644 $(BUILD)/libaset.pc $(DESTDIR)$(LIBDIR)/pkgconfig
+
+clean: ## remove the build directory
+	rm -rf $(BUILD)
+
+help: ## show this text
+	@sed -n 's/^\([a-z][a-z0-9-]*\):.*## \(.*\)/  \1|\2/p' Makefile | awk -F'|' '{ printf "  make %-16s %s\n", $$1, $$2 }' | sed 's/^  make   /  make /'
+
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
+
+.PHONY: all examples test test-long test-sanitize test-double check-layers check-link check-readme check-valgrind werror size demo \
+  hp9000 prices pictures deps install clean help
+.SECONDARY:

@@ -1,0 +1,87 @@
+/*
+ * config.h - what a build of libaset contains.
+ *
+ * Every switch may be given on the compiler's command line; a switch at 0 removes the feature's code and its bytes in every
+ * struct ("model only what a scene requires"). The library and every program that includes these headers must agree: the
+ * values are part of the names of the functions that take an affected struct, so a disagreement does not link.
+ */
+#ifndef ASET_CONFIG_H
+#define ASET_CONFIG_H
+
+#define ASET_VERSION_MAJOR 0
+#define ASET_VERSION_MINOR 1
+#define ASET_VERSION_PATCH 0
+#define ASET_VERSION "0.1.0"
+
+/* Bits of a real number: 32 (float, the default and the one all published byte counts use) or 64 (double). */
+#ifndef ASET_REAL_BITS
+#define ASET_REAL_BITS 32
+#endif
+/* Polygons of any number of vertices, concave too. */
+#ifndef ASET_WITH_POLYGONS
+#define ASET_WITH_POLYGONS 1
+#endif
+/* Polygons with a normal at every vertex; needs polygons. */
+#ifndef ASET_WITH_PATCHES
+#define ASET_WITH_PATCHES 1
+#endif
+#ifndef ASET_WITH_SPHERES
+#define ASET_WITH_SPHERES 1
+#endif
+/* Cones and cylinders with open ends. */
+#ifndef ASET_WITH_CONES
+#define ASET_WITH_CONES 1
+#endif
+/* Mirror reflection. Without it a material's specular part is its highlight alone. */
+#ifndef ASET_WITH_REFLECTION
+#define ASET_WITH_REFLECTION 1
+#endif
+/* Transmitted rays (Snell, total internal reflection). Without it a transmitting material is refused, not drawn opaque. */
+#ifndef ASET_WITH_REFRACTION
+#define ASET_WITH_REFRACTION 1
+#endif
+/* Cell summaries and the rays that stop at them (ASET). Without it the library is exact only. */
+#ifndef ASET_WITH_APPROXIMATION
+#define ASET_WITH_APPROXIMATION 1
+#endif
+
+#if ASET_REAL_BITS != 32 && ASET_REAL_BITS != 64
+#error "ASET_REAL_BITS is 32 (float) or 64 (double)"
+#endif
+#if ASET_WITH_PATCHES && !ASET_WITH_POLYGONS
+#error "ASET_WITH_PATCHES needs ASET_WITH_POLYGONS: a patch is a polygon with normals"
+#endif
+#if !ASET_WITH_POLYGONS && !ASET_WITH_SPHERES && !ASET_WITH_CONES
+#error "switch on at least one kind of object: ASET_WITH_POLYGONS, ASET_WITH_SPHERES or ASET_WITH_CONES"
+#endif
+
+/*
+ * Names that carry the switches. A program compiled with other values asks the linker for a function that the library does
+ * not have, for example aset_scene_init__32_0111111 instead of aset_scene_init__32_1111111.
+ */
+#define ASET_LAYOUT_PASTE(name, bits, a, b, c, d, e, f, g) name##__##bits##_##a##b##c##d##e##f##g
+#define ASET_LAYOUT_EXPAND(name, bits, a, b, c, d, e, f, g) ASET_LAYOUT_PASTE(name, bits, a, b, c, d, e, f, g)
+#define ASET_LAYOUT(name)                                                                                              \
+    ASET_LAYOUT_EXPAND(name, ASET_REAL_BITS, ASET_WITH_POLYGONS, ASET_WITH_PATCHES, ASET_WITH_SPHERES,                 \
+                       ASET_WITH_CONES, ASET_WITH_REFLECTION, ASET_WITH_REFRACTION, ASET_WITH_APPROXIMATION)
+
+#define aset_arena_init ASET_LAYOUT(aset_arena_init)
+#define aset_scene_init ASET_LAYOUT(aset_scene_init)
+#define aset_scene_sink ASET_LAYOUT(aset_scene_sink)
+#define aset_counter_sink ASET_LAYOUT(aset_counter_sink)
+#define aset_sink_polygon ASET_LAYOUT(aset_sink_polygon)
+#define aset_space_build ASET_LAYOUT(aset_space_build)
+#define aset_space_measure ASET_LAYOUT(aset_space_measure)
+#define aset_summary_measure ASET_LAYOUT(aset_summary_measure)
+#define aset_summary_build ASET_LAYOUT(aset_summary_build)
+#define aset_closest_hit ASET_LAYOUT(aset_closest_hit)
+#define aset_any_hit ASET_LAYOUT(aset_any_hit)
+#define aset_scratch_init ASET_LAYOUT(aset_scratch_init)
+#define aset_ray_colour ASET_LAYOUT(aset_ray_colour)
+#define aset_render_rows ASET_LAYOUT(aset_render_rows)
+#define aset_report_text ASET_LAYOUT(aset_report_text)
+#define aset_report_json ASET_LAYOUT(aset_report_json)
+#define aset_load_nff ASET_LAYOUT(aset_load_nff)
+#define aset_procedural_find ASET_LAYOUT(aset_procedural_find)
+
+#endif

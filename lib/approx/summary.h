@@ -1,0 +1,14 @@
+/* summary.h - reading what a cell remembers. */
+#ifndef ASET_APPROX_SUMMARY_H
+#define ASET_APPROX_SUMMARY_H
+
+#include "aset/draft.h"
+#include "base/bits.h"
+
+#if ASET_WITH_APPROXIMATION
+static inline const aset_material *summary_texture(const aset_summary *summary, uint32_t cell) {
+    return summary->textures + bits_get(summary->of_cell, summary->width, cell);
+}
+#endif
+
+#endif

@@ -1,0 +1,112 @@
+/*
+ * texture.c - the equal-weight average of materials, and the bounded texture list (Dauenhauer and Semwal 1990, figure 1:
+ * "search existing texture list for texture match").
+ *
+ * A part is kept in units of 2^-16 and below 2^24 (a Phong exponent of 10^5 takes 33 bits), so 2^23 objects may share a cell
+ * before a sum could leave 64 bits; the most that a cell refers to is the number of objects, which 2^32 bounds: larger
+ * sums are halved, which no scene that fits a memory reaches.
+ */
+#include "approx/texture.h"
+
+#include "base/real.h"
+
+#if ASET_WITH_APPROXIMATION
+
+#define UNIT R(65536)
+#define PART_MAX R(16777215)
+
+static void parts_of(const aset_material *m, aset_real parts[TEXTURE_PARTS]) {
+    parts[0] = m->fill.r;
+    parts[1] = m->fill.g;
+    parts[2] = m->fill.b;
+    parts[3] = m->diffuse;
+    parts[4] = m->specular;
+    parts[5] = m->shine;
+#if ASET_WITH_REFRACTION
+    parts[6] = m->transmittance;
+    parts[7] = m->refraction_index > 0 ? m->refraction_index : 1; /* 0 means 1, and averages as 1 */
+#else
+    parts[6] = parts[7] = 0;
+#endif
+}
+
+void texture_sum_add(texture_sum *sum, const aset_material *material) {
+    aset_real parts[TEXTURE_PARTS];
+    parts_of(material, parts);
+    for (int i = 0; i < TEXTURE_PARTS; i++) {
+        sum->parts[i] += (uint64_t)(real_min(parts[i], PART_MAX) * UNIT + R(0.5));
+    }
+    sum->n++;
+}
+
+aset_material texture_average(const texture_sum *sum) {
+    aset_real parts[TEXTURE_PARTS];
+    for (int i = 0; i < TEXTURE_PARTS; i++) {
+        parts[i] = (aset_real)((sum->parts[i] + sum->n / 2) / sum->n) / UNIT;
+    }
+    aset_material m;
+    m.fill.r = parts[0];
+    m.fill.g = parts[1];
+    m.fill.b = parts[2];
+    m.diffuse = parts[3];
+    m.specular = parts[4];
+    m.shine = parts[5];
+#if ASET_WITH_REFRACTION
+    m.transmittance = parts[6];
+    m.refraction_index = parts[7];
+#endif
+    m.one_sided = false;
+    return m;
+}
+
+/*
+ * How different two textures look: squared differences of what they add to a pixel. The exponent and the index of refraction
+ * count by their ratio, since 10 and 20 differ more than 1000 and 1010.
+ */
+static aset_real texture_difference(const aset_material *a, const aset_material *b) {
+    aset_real p[TEXTURE_PARTS], q[TEXTURE_PARTS], sum = 0;
+    parts_of(a, p);
+    parts_of(b, q);
+    for (int i = 0; i < TEXTURE_PARTS; i++) {
+        aset_real d = p[i] - q[i];
+        if (i == 5 || i == 7) {
+            d = d / (p[i] + q[i] + 1);
+        }
+        sum += d * d;
+    }
+    return sum;
+}
+
+bool texture_equal(const aset_material *a, const aset_material *b) {
+    bool same = a->fill.r == b->fill.r && a->fill.g == b->fill.g && a->fill.b == b->fill.b && a->diffuse == b->diffuse &&
+                a->specular == b->specular && a->shine == b->shine;
+#if ASET_WITH_REFRACTION
+    same = same && a->transmittance == b->transmittance && a->refraction_index == b->refraction_index;
+#endif
+    return same;
+}
+
+bool texture_find(const aset_summary *summary, const aset_material *texture, uint32_t *number) {
+    for (uint32_t i = 0; i < summary->n_textures; i++) {
+        if (texture_equal(summary->textures + i, texture)) {
+            *number = i;
+            return true;
+        }
+    }
+    return false;
+}
+
+uint32_t texture_nearest(const aset_summary *summary, const aset_material *texture) {
+    uint32_t nearest = 0;
+    aset_real least = REAL_INFINITY;
+    for (uint32_t i = 0; i < summary->n_textures; i++) {
+        aset_real difference = texture_difference(summary->textures + i, texture);
+        if (difference < least) {
+            least = difference;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+#endif

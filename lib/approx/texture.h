@@ -1,0 +1,31 @@
+/* texture.h - averages of materials, and the bounded list that shares them. */
+#ifndef ASET_APPROX_TEXTURE_H
+#define ASET_APPROX_TEXTURE_H
+
+#include "aset/draft.h"
+
+#if ASET_WITH_APPROXIMATION
+
+enum { TEXTURE_PARTS = 8 }; /* fill r g b, Kd, Ks, shine, T, ior */
+
+/* A sum of materials in whole numbers, units of 2^-16: exact, so the order of adding does not matter. */
+typedef struct texture_sum {
+    uint64_t parts[TEXTURE_PARTS];
+    uint32_t n;
+} texture_sum;
+
+void texture_sum_add(texture_sum *sum, const aset_material *material);
+
+/* The average, each part rounded to the nearest unit; n > 0. */
+aset_material texture_average(const texture_sum *sum);
+
+bool texture_equal(const aset_material *a, const aset_material *b);
+
+/* The number of an equal texture in the summary's list; false if there is none. */
+bool texture_find(const aset_summary *summary, const aset_material *texture, uint32_t *number);
+
+/* The number of the texture in the summary's list, which is not empty, that looks most like this one. */
+uint32_t texture_nearest(const aset_summary *summary, const aset_material *texture);
+
+#endif
+#endif

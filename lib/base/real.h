@@ -1,0 +1,57 @@
+/*
+ * real.h - the few functions of real numbers that the core needs, for float and double from one source.
+ *
+ * Pictures and counts are to be the same with every compiler and libm, so only + - * / and the square root (all exactly
+ * rounded by IEEE 754) come from outside; power and tangent are our own, made of these.
+ */
+#ifndef ASET_BASE_REAL_H
+#define ASET_BASE_REAL_H
+
+#include "aset/types.h"
+
+#include <float.h>
+#include <math.h>
+
+#define R(x) ((aset_real)(x))
+
+#if ASET_REAL_BITS == 32
+#define REAL_MAX FLT_MAX
+/* u, the largest relative error of one rounding */
+#define REAL_UNIT (FLT_EPSILON / 2)
+#else
+#define REAL_MAX DBL_MAX
+#define REAL_UNIT (DBL_EPSILON / 2)
+#endif
+#define REAL_INFINITY ((aset_real)INFINITY)
+
+static inline aset_real real_sqrt(aset_real x) {
+#if ASET_REAL_BITS == 32
+    return sqrtf(x);
+#else
+    return sqrt(x);
+#endif
+}
+
+static inline aset_real real_abs(aset_real x) {
+    return x < 0 ? -x : x;
+}
+
+static inline aset_real real_min(aset_real a, aset_real b) {
+    return a < b ? a : b;
+}
+
+static inline aset_real real_max(aset_real a, aset_real b) {
+    return a > b ? a : b;
+}
+
+static inline bool real_finite(aset_real x) {
+    return x - x == 0; /* infinity - infinity and anything with NaN are NaN */
+}
+
+/* base^exponent for 0 <= base <= 1 (above 1 is taken as 1) and exponent >= 0; within 2^-12 of the true value. */
+aset_real real_power(aset_real base, aset_real exponent);
+
+/* The tangent of an angle of 0 <= angle_deg < 90 degrees. */
+aset_real real_tangent_deg(aset_real angle_deg);
+
+#endif

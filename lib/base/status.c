@@ -1,0 +1,33 @@
+/* status.c - a sentence for every status, and adding up statistics. */
+#include "aset/types.h"
+
+const char *aset_status_text(aset_status status) {
+    switch (status) {
+    case ASET_OK: return "done";
+    case ASET_ERR_ARGUMENT: return "an argument is outside what the call allows";
+    case ASET_ERR_NOMEM: return "the arena is too small";
+    case ASET_ERR_LIMIT: return "a count is beyond what the library can index";
+    case ASET_ERR_GEOMETRY: return "the geometry is degenerate or not finite";
+    case ASET_ERR_UNSUPPORTED: return "the feature was switched off when the library was compiled";
+    case ASET_ERR_STOPPED: return "stopped by the caller";
+    case ASET_ERR_READ: return "the input could not be read";
+    case ASET_ERR_SYNTAX: return "the input is not in the expected format";
+    }
+    return "an unknown status";
+}
+
+void aset_statistics_add(aset_statistics *to, const aset_statistics *from) {
+    to->primary += from->primary;
+    to->primary_hit += from->primary_hit;
+    to->shadow += from->shadow;
+    to->shadow_hit += from->shadow_hit;
+    to->reflected += from->reflected;
+    to->refracted += from->refracted;
+    to->secondary_hit += from->secondary_hit;
+    to->curtailed += from->curtailed;
+    to->cells_visited += from->cells_visited;
+    to->nonempty_visited += from->nonempty_visited;
+    to->tests += from->tests;
+    to->test_hits += from->test_hits;
+    to->approx_hits += from->approx_hits;
+}

@@ -1,0 +1,114 @@
+/*
+ * cone.c - truncated cones and cylinders with open ends.
+ *
+ * With the axis k from the base B, a point at height m along it lies on the surface if its distance from the axis is
+ * r(m) = r0 + s m, s = (r1 - r0) / H, and 0 <= m <= H. Along the ray that is the quadratic a t^2 + 2 b t + c = 0, taken about
+ * the ray's point nearest to the cone's middle, where its coefficients are of the cone's own size (the same remedy as for
+ * spheres: Haines et al., Ray Tracing Gems 2019, chapter 7), and solved without cancellation.
+ */
+#include "scene/shape.h"
+
+#if ASET_WITH_CONES
+
+typedef struct cone {
+    aset_vec3 base, axis; /* axis of unit length */
+    aset_real length, radius, slope;
+    bool inside_only;
+} cone;
+
+static cone cone_of(const aset_real *at) {
+    aset_vec3 along = vec_sub(vec(at[4], at[5], at[6]), vec(at[0], at[1], at[2]));
+    cone c;
+    c.base = vec(at[0], at[1], at[2]);
+    c.axis = vec_unit(along);
+    c.length = vec_length(along);
+    c.radius = real_abs(at[3]);
+    c.slope = (real_abs(at[7]) - c.radius) / c.length;
+    c.inside_only = at[3] < 0 || at[7] < 0;
+    return c;
+}
+
+/* Not normalised: from the axis outwards, tilted by the slope. */
+static aset_vec3 outward(const cone *c, aset_vec3 from_base) {
+    aset_real height = vec_dot(from_base, c->axis);
+    aset_vec3 across = vec_unit(vec_along(from_base, -height, c->axis));
+    return vec_along(across, -c->slope, c->axis);
+}
+
+/* Is the surface's point at t, counted from the shifted origin f, between the ends, in front and on a side that is seen? */
+static bool root_counts(const cone *c, aset_vec3 f, aset_vec3 d, aset_real t, aset_real shift, unsigned sides) {
+    if (!(t + shift > 0)) {
+        return false;
+    }
+    aset_vec3 point = vec_along(f, t, d);
+    aset_real height = vec_dot(point, c->axis);
+    if (!(height >= 0 && height <= c->length)) {
+        return false;
+    }
+    if (sides == SIDE_BOTH && !c->inside_only) {
+        return true;
+    }
+    bool from_outside = vec_dot(outward(c, point), d) < 0;
+    return from_outside != c->inside_only; /* one side only: the outside, or the inside of a negative cone */
+}
+
+/* Both roots of a t^2 + 2 b t + c, the smaller first; false if there is none. */
+static bool quadratic_roots(aset_real a, aset_real b, aset_real c, aset_real roots[2]) {
+    aset_real discriminant = b * b - a * c;
+    if (!(discriminant >= 0)) {
+        return false;
+    }
+    aset_real q = b < 0 ? -b + real_sqrt(discriminant) : -b - real_sqrt(discriminant);
+    roots[0] = a != 0 ? q / a : REAL_INFINITY;
+    roots[1] = q != 0 ? c / q : 0;
+    if (roots[0] > roots[1]) {
+        aset_real swap = roots[0];
+        roots[0] = roots[1];
+        roots[1] = swap;
+    }
+    return true;
+}
+
+aset_real cone_nearest(const aset_real *at, const probe *ray, unsigned sides) {
+    cone c = cone_of(at);
+    aset_vec3 d = probe_direction(ray), from_base = vec_sub(probe_origin(ray), c.base);
+    aset_real shift = vec_dot(vec_along(vec_scale(c.axis, c.length / 2), -1, from_base), d);
+    aset_vec3 f = vec_along(from_base, shift, d);
+    aset_real f_height = vec_dot(f, c.axis), d_height = vec_dot(d, c.axis);
+    aset_vec3 f_across = vec_along(f, -f_height, c.axis), d_across = vec_along(d, -d_height, c.axis);
+    aset_real radius = c.radius + c.slope * f_height, growth = c.slope * d_height;
+    aset_real distance = vec_length(f_across);
+    aset_real roots[2];
+    if (!quadratic_roots(vec_dot(d_across, d_across) - growth * growth, vec_dot(d_across, f_across) - growth * radius,
+                         (distance - radius) * (distance + radius), roots)) {
+        return REAL_INFINITY;
+    }
+    for (int i = 0; i < 2; i++) {
+        if (real_finite(roots[i]) && root_counts(&c, f, d, roots[i], shift, sides)) {
+            return roots[i] + shift;
+        }
+    }
+    return REAL_INFINITY;
+}
+
+/* A disc of radius r across the unit axis k reaches r sqrt(1 - k_a^2) along axis a. */
+static aset_vec3 disc_reach(aset_vec3 k, aset_real r) {
+    return vec(r * real_sqrt(real_max(0, k.y * k.y + k.z * k.z)), r * real_sqrt(real_max(0, k.x * k.x + k.z * k.z)),
+               r * real_sqrt(real_max(0, k.x * k.x + k.y * k.y)));
+}
+
+void cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
+    cone c = cone_of(at);
+    aset_vec3 apex = vec(at[4], at[5], at[6]);
+    aset_vec3 base_reach = disc_reach(c.axis, c.radius), apex_reach = disc_reach(c.axis, real_abs(at[7]));
+    *low = vec_min(vec_sub(c.base, base_reach), vec_sub(apex, apex_reach));
+    *high = vec_max(vec_add(c.base, base_reach), vec_add(apex, apex_reach));
+}
+
+aset_vec3 cone_normal(const aset_real *at, aset_vec3 point) {
+    cone c = cone_of(at);
+    aset_vec3 n = vec_unit(outward(&c, vec_sub(point, c.base)));
+    return c.inside_only ? vec_scale(n, -1) : n;
+}
+
+#endif

@@ -1,0 +1,115 @@
+/* entity.c - the checks of entities, in one place for all sinks. */
+#include "scene/entity.h"
+
+static bool is_amount(aset_real x) {
+    return x >= 0 && real_finite(x);
+}
+
+aset_status entity_check_colour(const aset_colour *colour) {
+    return is_amount(colour->r) && is_amount(colour->g) && is_amount(colour->b) ? ASET_OK : ASET_ERR_ARGUMENT;
+}
+
+aset_status entity_check_view(const aset_view *view) {
+    if (!vec_finite(view->from) || !vec_finite(view->at) || !vec_finite(view->up)) {
+        return ASET_ERR_GEOMETRY;
+    }
+    aset_vec3 along = vec_unit(vec_sub(view->at, view->from));
+    if (!(vec_largest(vec_cross(along, vec_unit(view->up))) > 0)) {
+        return ASET_ERR_GEOMETRY; /* no direction, no up, or both the same */
+    }
+    bool perspective = view->height == 0 && view->angle_deg > 0 && view->angle_deg < 180;
+    bool orthographic = view->height > 0 && real_finite(view->height);
+    return perspective || orthographic ? ASET_OK : ASET_ERR_ARGUMENT;
+}
+
+aset_status entity_check_light(const aset_light *light) {
+    if (!vec_finite(light->position) || (light->directional && !(vec_largest(light->position) > 0))) {
+        return ASET_ERR_GEOMETRY;
+    }
+    return light->has_colour ? entity_check_colour(&light->colour) : ASET_OK;
+}
+
+aset_status entity_check_material(const aset_material *material) {
+    bool fine = is_amount(material->diffuse) && is_amount(material->specular) && is_amount(material->shine);
+#if ASET_WITH_REFRACTION
+    fine = fine && is_amount(material->transmittance) && is_amount(material->refraction_index);
+#endif
+    return fine ? entity_check_colour(&material->fill) : ASET_ERR_ARGUMENT;
+}
+
+static bool same_material(const aset_material *a, const aset_material *b) {
+    bool same = a->fill.r == b->fill.r && a->fill.g == b->fill.g && a->fill.b == b->fill.b && a->diffuse == b->diffuse &&
+                a->specular == b->specular && a->shine == b->shine && a->one_sided == b->one_sided;
+#if ASET_WITH_REFRACTION
+    same = same && a->transmittance == b->transmittance && a->refraction_index == b->refraction_index;
+#endif
+    return same;
+}
+
+aset_status entity_use_material(aset_recent_materials *recent, bool *is_new) {
+    *is_new = false;
+    if (!recent->has_pending) {
+        return recent->has_current ? ASET_OK : ASET_ERR_ARGUMENT;
+    }
+    uint32_t oldest = recent->n > ASET_RECENT ? recent->n - ASET_RECENT : 0;
+    for (uint32_t k = recent->n; k > oldest; k--) {
+        if (same_material(&recent->list[(k - 1) % ASET_RECENT], &recent->pending)) {
+            recent->has_pending = false;
+            recent->current = k - 1;
+            return ASET_OK;
+        }
+    }
+    recent->list[recent->n % ASET_RECENT] = recent->pending;
+    recent->current = recent->n++;
+    recent->has_current = true;
+    recent->has_pending = false;
+    *is_new = true;
+    return ASET_OK;
+}
+
+aset_status entity_check_sphere(const aset_vec3 *centre, aset_real radius) {
+    return vec_finite(*centre) && real_finite(radius) && radius != 0 ? ASET_OK : ASET_ERR_GEOMETRY;
+}
+
+aset_status entity_check_cone(const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
+                              aset_real apex_radius) {
+    bool finite = vec_finite(*base) && vec_finite(*apex) && real_finite(base_radius) && real_finite(apex_radius);
+    bool one_sign = (base_radius >= 0 && apex_radius >= 0) || (base_radius <= 0 && apex_radius <= 0);
+    bool some = base_radius != 0 || apex_radius != 0;
+    return finite && one_sign && some && vec_largest(vec_sub(*apex, *base)) > 0 ? ASET_OK : ASET_ERR_GEOMETRY;
+}
+
+aset_status outline_begin(aset_outline *outline, uint32_t n_points, bool with_normals) {
+    outline->open = false;
+#if !ASET_WITH_PATCHES
+    if (with_normals) {
+        return ASET_ERR_UNSUPPORTED;
+    }
+#endif
+    if (n_points < 3) {
+        return ASET_ERR_GEOMETRY;
+    }
+    outline->n_announced = n_points;
+    outline->n_given = 0;
+    outline->with_normals = with_normals;
+    outline->open = true;
+    return ASET_OK;
+}
+
+aset_status outline_point(aset_outline *outline, const aset_vec3 *point, const aset_vec3 *normal) {
+    bool fits = outline->open && outline->n_given < outline->n_announced && outline->with_normals == (normal != NULL);
+    if (!fits || !vec_finite(*point) || (normal != NULL && !vec_finite(*normal))) {
+        outline->open = false;
+        return ASET_ERR_GEOMETRY;
+    }
+    outline->low = outline->n_given == 0 ? *point : vec_min(outline->low, *point);
+    outline->high = outline->n_given == 0 ? *point : vec_max(outline->high, *point);
+    outline->n_given++;
+    return ASET_OK;
+}
+
+aset_status outline_end(aset_outline *outline) {
+    bool complete = outline->open && outline->n_given == outline->n_announced;
+    outline->open = false;
+    return complete ? ASET_OK : ASET_ERR_GEOMETRY;
+}

@@ -1,0 +1,162 @@
+/* slices.c - where the slices are, which voxels a box touches, where a ray begins among them. */
+#include "space/slices.h"
+
+/*
+ * How far the volume reaches beyond the scene's box, in margins of objects. Much more than an object's own growth, so that where
+ * objects lie in what would be slices of the bare box (a ground, storeys, symmetric scenes) the slices pass beside them by
+ * more than that growth, and a flat object stays one voxel thick. Unequal, by the golden section, so that the one place
+ * where both shifts cancel is no simple fraction of the volume.
+ */
+#define BEYOND_LOW 79
+#define BEYOND_HIGH 49
+
+void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]) {
+    aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
+    aset_real margin = 0;
+    if (aset_scene_bounds(scene, &low, &high)) {
+        margin = scene->margin;
+    }
+    const aset_real lows[3] = {low.x, low.y, low.z}, highs[3] = {high.x, high.y, high.z};
+    for (int a = 0; a < 3; a++) {
+        slices->n[a] = divisions[a];
+        slices->low[a] = lows[a] - BEYOND_LOW * margin;
+        slices->width[a] = (highs[a] + BEYOND_HIGH * margin - slices->low[a]) / (aset_real)divisions[a];
+        slices->per_width[a] = 1 / slices->width[a];
+    }
+}
+
+int32_t slices_locate(const aset_slices *slices, int a, aset_real x) {
+    int32_t last = (int32_t)slices->n[a] - 1;
+    aset_real guess = (x - slices->low[a]) * slices->per_width[a];
+    int32_t k = !(guess > 0) ? 0 : guess >= (aset_real)last ? last : (int32_t)guess;
+    while (k > 0 && slices_plane(slices, a, k) > x) {
+        k--;
+    }
+    while (k < last && slices_plane(slices, a, k + 1) <= x) {
+        k++;
+    }
+    return k;
+}
+
+voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object) {
+    aset_vec3 low, high;
+    aset_object_bounds(scene, object, &low, &high);
+    aset_real margin = 2 * scene->margin;
+    voxel_box box;
+    for (int a = 0; a < 3; a++) {
+        box.low[a] = slices_locate(slices, a, vec_at(&low, a) - margin);
+        box.high[a] = slices_locate(slices, a, vec_at(&high, a) + margin);
+    }
+    return box;
+}
+
+/* Prepares steps and ends; nothing that depends on where the walk begins. */
+static void dda_prepare(dda *walk, const aset_slices *slices, const probe *ray) {
+    for (int a = 0; a < 3; a++) {
+        bool up = ray->direction[a] > 0;
+        walk->step[a] = up ? 1 : -1;
+        walk->end[a] = up ? (int32_t)slices->n[a] : -1;
+        walk->next[a] = REAL_INFINITY;
+    }
+    walk->axis = -1;
+    walk->t = 0;
+}
+
+/* Whether the crossing of slice k of axis b comes before (t, axis) in the order of all crossings. */
+static bool crossed(const aset_slices *slices, const probe *ray, int b, int32_t k, aset_real t, int axis) {
+    aset_real tk = dda_crossing(slices, ray, b, k);
+    return tk < t || (tk == t && b < axis);
+}
+
+/*
+ * The voxel number of axis b after all crossings before (t, axis), within the window; false if the ray has left the window by
+ * then. The position guesses, the order of crossings decides.
+ */
+static bool settle(const aset_slices *slices, const probe *ray, int b, aset_real t, int axis, const voxel_box *window,
+                   int32_t *voxel) {
+    int32_t k = slices_locate(slices, b, ray->origin[b] + t * ray->direction[b]);
+    int up = ray->direction[b] > 0;
+    int32_t step = up ? 1 : -1, entry = up ? 0 : 1; /* a voxel's entry slice is k + entry, its exit k + 1 - entry */
+    k = k < window->low[b] ? window->low[b] : k > window->high[b] ? window->high[b] : k;
+    int32_t first = up ? window->low[b] : window->high[b], last = up ? window->high[b] : window->low[b];
+    while (k != first && !crossed(slices, ray, b, k + entry, t, axis)) {
+        k -= step;
+    }
+    while (crossed(slices, ray, b, k + 1 - entry, t, axis)) {
+        if (k == last) {
+            return false;
+        }
+        k += step;
+    }
+    *voxel = k;
+    return true;
+}
+
+/* An axis along which the ray stands still: its voxel never changes. */
+static bool stand(const aset_slices *slices, const probe *ray, int a, const voxel_box *window, int32_t *voxel) {
+    aset_real x = ray->origin[a];
+    if (x < slices->low[a] || x > slices_plane(slices, a, (int32_t)slices->n[a])) {
+        return false;
+    }
+    *voxel = slices_locate(slices, a, x);
+    return *voxel >= window->low[a] && *voxel <= window->high[a];
+}
+
+bool dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window) {
+    dda_prepare(walk, slices, ray);
+    aset_real t = -REAL_INFINITY, t_out = REAL_INFINITY;
+    int axis = -1;
+    for (int a = 0; a < 3; a++) {
+        if (!ray->moves[a]) {
+            if (!stand(slices, ray, a, window, &walk->voxel[a])) {
+                return false;
+            }
+            continue;
+        }
+        int up = ray->direction[a] > 0;
+        aset_real in = dda_crossing(slices, ray, a, up ? window->low[a] : window->high[a] + 1);
+        aset_real out = dda_crossing(slices, ray, a, up ? window->high[a] + 1 : window->low[a]);
+        if (in >= t) {
+            t = in;
+            axis = a;
+        }
+        t_out = real_min(t_out, out);
+    }
+    if (t_out < t || t_out < 0) {
+        return false;
+    }
+    for (int a = 0; a < 3; a++) {
+        if (!ray->moves[a]) {
+            continue;
+        }
+        if (a == axis) {
+            walk->voxel[a] = ray->direction[a] > 0 ? window->low[a] : window->high[a];
+        } else if (!settle(slices, ray, a, t, axis, window, &walk->voxel[a])) {
+            return false;
+        }
+        walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (ray->direction[a] > 0));
+    }
+    walk->t = t;
+    walk->axis = axis;
+    return true;
+}
+
+bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray) {
+    dda_prepare(walk, slices, ray);
+    for (int a = 0; a < 3; a++) {
+        aset_real x = ray->origin[a];
+        int32_t last = (int32_t)slices->n[a] - 1;
+        if (x < slices->low[a] || x > slices_plane(slices, a, last + 1)) {
+            return false;
+        }
+        int32_t k = slices_locate(slices, a, x);
+        if (ray->moves[a] && ray->direction[a] < 0 && k > 0 && slices_plane(slices, a, k) == x) {
+            k--; /* on a slice, going down: that slice is crossed at t = 0, as upwards it is by locate */
+        }
+        walk->voxel[a] = k;
+        if (ray->moves[a]) {
+            walk->next[a] = dda_crossing(slices, ray, a, k + (ray->direction[a] > 0));
+        }
+    }
+    return true;
+}

@@ -1,0 +1,73 @@
+/*
+ * slices.h - equally spaced slices, and the way of a ray across them.
+ *
+ * With n divisions an axis has the slices 0 to n, slice k at low + k width; voxel k lies between slices k and k + 1.
+ *
+ *      slice 0   1   2   3          The ray's crossings of all slices are put in one order: by t, and at equal t by axis. A
+ *            |   |   |   |          crossing's t is always computed from the slice's number, (slice - origin) / direction,
+ *         ---+---+--/+---+          never by adding up, so it is the same wherever a walk begins, and it grows with the
+ *            |   | / |   |          number of crossings of its axis even after rounding. So a ray's way is one fixed chain of
+ *         ---+---+/--+---+          face-to-face voxels: it enters a convex box of voxels at most once, and a walk of
+ *            |   /   |   |          n_x + n_y + n_z crossings at most is over. Amanatides and Woo 1987 step the same way.
+ */
+#ifndef ASET_SPACE_SLICES_H
+#define ASET_SPACE_SLICES_H
+
+#include "aset/space.h"
+#include "scene/shape.h"
+
+/* A box of voxels, both ends included. */
+typedef struct voxel_box {
+    int32_t low[3], high[3];
+} voxel_box;
+
+/*
+ * Cuts the scene's box, grown a little more than the boxes of objects will be. A scene without objects gets a unit cube.
+ */
+void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]);
+
+/* The voxels that an object's grown box touches: its expanded box in the paper's words. */
+voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object);
+
+static inline aset_real slices_plane(const aset_slices *slices, int a, int32_t k) {
+    return slices->low[a] + (aset_real)k * slices->width[a];
+}
+
+/* The voxel that holds x: the last one whose lower slice is not above x; the first or last for x outside. */
+int32_t slices_locate(const aset_slices *slices, int a, aset_real x);
+
+typedef struct dda {
+    int32_t voxel[3], step[3], end[3]; /* end: the voxel number with which the ray has left the volume */
+    aset_real next[3];                 /* t at which each axis is crossed next */
+    aset_real t;                       /* of the last crossing */
+    int axis;                          /* of the last crossing; -1 before any */
+} dda;
+
+static inline aset_real dda_crossing(const aset_slices *slices, const probe *ray, int a, int32_t k) {
+    return (slices_plane(slices, a, k) - ray->origin[a]) * ray->inverse[a];
+}
+
+/*
+ * Puts the walk at the ray's entry into the window (a box of voxels within the volume), wherever on the ray's line that is: the
+ * last crossing is the window's face. False if the line misses the window or leaves it before t = 0.
+ */
+bool dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window);
+
+/* Puts the walk into the voxel of the ray's origin, before any crossing. False if the origin is outside the volume. */
+bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray);
+
+/* Crosses one more slice. False: the ray has left the volume. */
+static inline bool dda_step(dda *walk, const aset_slices *slices, const probe *ray) {
+    int a = walk->next[0] <= walk->next[1] ? 0 : 1;
+    a = walk->next[a] <= walk->next[2] ? a : 2;
+    walk->t = walk->next[a];
+    walk->axis = a;
+    walk->voxel[a] += walk->step[a];
+    if (walk->voxel[a] == walk->end[a]) {
+        return false;
+    }
+    walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (walk->step[a] > 0));
+    return true;
+}
+
+#endif

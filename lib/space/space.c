@@ -1,0 +1,134 @@
+/* space.c - measuring and building any space; the rule for automatic divisions. */
+#include "base/bits.h"
+#include "space/slices.h"
+#include "space/walk.h"
+
+#include <string.h>
+
+#define AUTO_DIVISIONS 4
+#define AUTO_DIVISIONS_MAX 128
+#define AUTO_THIN R(0.001)
+#define STACK_SCRATCH_WORDS 128 /* a kilobyte */
+
+const char *aset_method_name(const aset_method *method) {
+    return method->name;
+}
+
+/* The cube root of x >= 1, by Newton's steps from above: twice the precision each once they are near. */
+static aset_real cube_root(aset_real x) {
+    aset_real root = x;
+    for (int i = 0; i < 60; i++) {
+        root = (2 * root + x / (root * root)) / 3;
+    }
+    return root;
+}
+
+void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisions[3]) {
+    aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
+    aset_scene_bounds(scene, &low, &high);
+    aset_vec3 span = vec_sub(high, low);
+    aset_real wanted = AUTO_DIVISIONS * cube_root(real_max((aset_real)scene->counts.objects, 1));
+    uint32_t n = wanted > AUTO_DIVISIONS_MAX ? AUTO_DIVISIONS_MAX : (uint32_t)(wanted + R(0.5));
+    while (budget > 0 && n > 1 && (uint64_t)n * n * n * 12 / 8 / 64 > budget / 2) {
+        n -= (n + 7) / 8; /* the map of blocks alone, one and a half bits a block, would take half of it */
+    }
+    for (int a = 0; a < 3; a++) {
+        divisions[a] = vec_at(&span, a) > AUTO_THIN * vec_largest(span) ? n : 1;
+    }
+}
+
+/* The options' divisions, checked; automatic ones are filled in. */
+static aset_status choose_divisions(aset_space_size *size, const aset_scene *scene, const aset_space_options *options,
+                                    const aset_arena *arena, bool *is_auto) {
+    const uint32_t *n = size->divisions;
+    memset(size, 0, sizeof *size);
+    if (options != NULL) {
+        memcpy(size->divisions, options->divisions, sizeof size->divisions);
+    }
+    *is_auto = n[0] == 0 && n[1] == 0 && n[2] == 0;
+    if (*is_auto) {
+        aset_auto_divisions(scene, arena != NULL ? arena->size - arena->used : 0, size->divisions);
+    }
+    for (int a = 0; a < 3; a++) {
+        if (n[a] < 1 || n[a] > ASET_DIVISIONS_MAX) {
+            return ASET_ERR_ARGUMENT;
+        }
+    }
+    return ASET_OK;
+}
+
+/* One measurement, with the arena's free bytes as scratch if they are worth more than the stack's kilobyte. */
+static aset_status measure_with(aset_space_size *size, const aset_scene *scene, const aset_method *method,
+                                aset_arena *arena) {
+    uint64_t words[STACK_SCRATCH_WORDS];
+    size_t left = arena != NULL ? (arena->size - arena->used) / 8 * 8 : 0;
+    aset_status status =
+        left > sizeof words
+            ? method->measure(size, scene, (uint64_t *)(void *)(arena->block + arena->used), left)
+            : method->measure(size, scene, words, sizeof words);
+    size->total = size->cells + size->references + size->voxels;
+    return status;
+}
+
+aset_status aset_space_measure(aset_space_size *size, const aset_scene *scene, const aset_method *method,
+                               const aset_space_options *options, aset_arena *arena) {
+    bool is_auto;
+    if (size == NULL || scene == NULL || method == NULL) {
+        return ASET_ERR_ARGUMENT;
+    }
+    aset_status status = choose_divisions(size, scene, options, arena, &is_auto);
+    return status == ASET_OK ? measure_with(size, scene, method, arena) : status;
+}
+
+/* What automatic divisions have to leave room for, beside the space. */
+static size_t reserved(const aset_space_size *size, const aset_space_options *options) {
+    if (options == NULL) {
+        return 0;
+    }
+    return options->reserve + (options->textures > 0 ? ASET_BYTES_SUMMARY(size->n_cells, options->textures) : 0);
+}
+
+/* Makes automatic divisions smaller until everything fits. */
+static aset_status shrink_to_fit(aset_space_size *size, const aset_scene *scene, const aset_method *method,
+                                 const aset_space_options *options, aset_arena *arena) {
+    uint32_t *n = size->divisions;
+    aset_status status = ASET_OK;
+    while (status == ASET_OK && !aset_arena_fits(arena, size->total + reserved(size, options))) {
+        if (n[0] == 1 && n[1] == 1 && n[2] == 1) {
+            return ASET_ERR_NOMEM;
+        }
+        for (int a = 0; a < 3; a++) {
+            n[a] = n[a] > 1 ? n[a] - (n[a] + 7) / 8 : 1;
+        }
+        status = measure_with(size, scene, method, arena);
+    }
+    return status;
+}
+
+aset_status aset_space_build(aset_space *space, const aset_scene *scene, const aset_method *method,
+                             const aset_space_options *options, aset_arena *arena) {
+    aset_space_size size;
+    bool is_auto;
+    if (space == NULL || scene == NULL || method == NULL || arena == NULL) {
+        return ASET_ERR_ARGUMENT;
+    }
+    aset_status status = choose_divisions(&size, scene, options, arena, &is_auto);
+    if (status == ASET_OK) {
+        status = measure_with(&size, scene, method, arena);
+    }
+    if (status == ASET_OK && is_auto) {
+        status = shrink_to_fit(&size, scene, method, options, arena);
+    }
+    if (status == ASET_OK && !aset_arena_fits(arena, size.total)) {
+        status = ASET_ERR_NOMEM;
+    }
+    if (status != ASET_OK) {
+        return status;
+    }
+    memset(space, 0, sizeof *space);
+    space->method = method;
+    space->scene = scene;
+    memcpy(space->slices.n, size.divisions, sizeof size.divisions);
+    method->build(space, &size, arena);
+    return ASET_OK;
+}

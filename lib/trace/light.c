@@ -1,0 +1,26 @@
+/*
+ * light.c - point and directional lights, without falloff. A light without a colour of its own is white, and n of them have
+ * 1 / sqrt(n) each: the rule of the SPD's own exporters (Haines).
+ */
+#include "trace/light.h"
+
+bool light_towards(light_ray *towards, const aset_scene *scene, const aset_light *light, aset_vec3 point) {
+    if (light->directional) {
+        towards->direction = light->position; /* the scene keeps it in unit length */
+        towards->distance = REAL_INFINITY;
+    } else {
+        aset_vec3 way = vec_sub(light->position, point);
+        towards->direction = vec_unit(way);
+        towards->distance = vec_length(way);
+        if (!(towards->distance > 0)) {
+            return false;
+        }
+    }
+    if (light->has_colour) {
+        towards->colour = light->colour;
+    } else {
+        aset_real one = 1 / real_sqrt((aset_real)scene->n_uncoloured);
+        towards->colour.r = towards->colour.g = towards->colour.b = one;
+    }
+    return true;
+}

@@ -1,0 +1,254 @@
+/*
+ * query.c - the exact and the approximate consumer of a space's walk.
+ *
+ * Exact: test what a cell refers to, keep the nearest hit, and tell the walk to go no farther than it. At equal t the object
+ * added first wins, so that every space and brute force agree. Approximate: the first cell entered at t > 0 that has a
+ * texture is the hit.
+ *
+ * A ray that starts very far away is first brought near: beyond FAR scene sizes the rounding of its slice crossings would
+ * exceed the boxes' margins. All spaces see the same moved ray.
+ */
+#include "trace/query.h"
+
+#include "approx/summary.h"
+#include "scene/shape.h"
+#include "space/walk.h"
+
+#define FAR 4
+
+typedef struct exact_query {
+    walk_request walk;
+    const aset_scene *scene;
+    const probe *ray;
+    aset_real end;  /* of the ray */
+    aset_real best; /* t of the nearest hit so far, or the ray's end */
+    uint32_t object;
+    bool any; /* the first hit ends it */
+    uint64_t tests, hits;
+} exact_query;
+
+static aset_real visit_exact(walk_request *walk, const walk_cell *cell) {
+    exact_query *q = (exact_query *)walk; /* walk is its first member */
+    for (uint32_t i = 0; i < cell->n; i++) {
+        uint32_t object = cell->objects[i];
+        aset_real t = object_nearest(q->scene, object, q->ray, q->best);
+        q->tests++;
+        bool nearer = t < q->best || (t == q->best && q->object != ASET_NO_OBJECT && object < q->object);
+        q->hits += t < q->end;
+        if (nearer) {
+            q->best = t;
+            q->object = object;
+            if (q->any) {
+                q->best = 0; /* nothing is nearer: whatever is still visited is tested in vain */
+                return -REAL_INFINITY;
+            }
+        }
+    }
+    return q->best;
+}
+
+static bool exact(exact_query *q, const aset_tracer *tracer, const probe *ray, aset_real t_max, bool any,
+                  aset_statistics *statistics) {
+    q->walk.visit = visit_exact;
+    q->walk.limit = t_max;
+    q->walk.wants_references = true;
+    q->walk.cells = q->walk.nonempty = 0;
+    q->scene = tracer->scene;
+    q->ray = ray;
+    q->best = q->end = t_max;
+    q->object = ASET_NO_OBJECT;
+    q->any = any;
+    q->tests = q->hits = 0;
+    tracer->space->method->go(tracer->space, ray, &q->walk);
+    statistics->tests += q->tests;
+    statistics->test_hits += q->hits;
+    statistics->cells_visited += q->walk.cells;
+    statistics->nonempty_visited += q->walk.nonempty;
+    return q->object != ASET_NO_OBJECT;
+}
+
+#if ASET_WITH_APPROXIMATION
+
+typedef struct approximate_query {
+    walk_request walk;
+    query_hit hit;
+    bool found;
+} approximate_query;
+
+static aset_real visit_approximate(walk_request *walk, const walk_cell *cell) {
+    approximate_query *q = (approximate_query *)walk;
+    q->hit.t = cell->t;
+    q->hit.cell = cell->index;
+    q->hit.face = cell->face;
+    q->found = true;
+    return -REAL_INFINITY;
+}
+
+/* Is the distance to the cell on the wrong side of the fraction of a voxel's diagonal? */
+static bool trapped(const aset_tracer *tracer, aset_real t) {
+    const aset_real *w = tracer->space->slices.width;
+    if (!(tracer->curtail > 0)) {
+        return false;
+    }
+    aset_real bound = tracer->curtail * vec_length(vec(w[0], w[1], w[2]));
+    return tracer->curtail_more ? t > bound : t < bound;
+}
+
+static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const probe *ray, aset_real t_max,
+                            aset_statistics *statistics) {
+    approximate_query q;
+    q.walk.visit = visit_approximate;
+    q.walk.limit = t_max;
+    q.walk.wants_references = false;
+    q.walk.cells = q.walk.nonempty = 0;
+    q.found = false;
+    tracer->space->method->go(tracer->space, ray, &q.walk);
+    statistics->cells_visited += q.walk.cells;
+    statistics->nonempty_visited += q.walk.nonempty;
+    if (!q.found || !(q.hit.t < t_max)) {
+        return false;
+    }
+    statistics->approx_hits++;
+    *hit = q.hit;
+    hit->object = ASET_NO_OBJECT;
+    return true;
+}
+
+#endif
+
+/* By how much a ray is to be moved along itself before anything is computed; 0 for nearly every ray. */
+static aset_real advance(const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
+    aset_vec3 low, high;
+    if (!aset_scene_bounds(scene, &low, &high)) {
+        return 0;
+    }
+    aset_real size = vec_largest(vec_sub(high, low));
+    aset_vec3 to_centre = vec_sub(vec_along(low, R(0.5), vec_sub(high, low)), origin);
+    if (vec_largest(to_centre) <= FAR * size) {
+        return 0;
+    }
+    aset_real t = vec_dot(to_centre, direction) - 2 * size; /* the box lies within 0.87 size of its centre */
+    return t > 0 ? t : 0;
+}
+
+bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                   bool approximate, aset_statistics *statistics) {
+    aset_real moved = advance(tracer->scene, origin, direction);
+    probe ray = probe_make(vec_along(origin, moved, direction), direction);
+    hit->curtailed = false;
+    bool found;
+#if ASET_WITH_APPROXIMATION
+    if (approximate) {
+        found = approximate_hit(hit, tracer, &ray, t_max - moved, statistics);
+        if (found && trapped(tracer, hit->t + moved)) {
+            statistics->curtailed++;
+            hit->curtailed = true;
+            return false;
+        }
+        hit->t += moved;
+        return found;
+    }
+#endif
+    (void)approximate;
+    exact_query q;
+    found = exact(&q, tracer, &ray, t_max - moved, false, statistics);
+    hit->t = q.best + moved;
+    hit->object = q.object;
+    return found;
+}
+
+bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
+               aset_statistics *statistics) {
+#if ASET_WITH_APPROXIMATION
+    if (approximate) {
+        query_hit hit; /* the first cell is any cell */
+        return query_closest(&hit, tracer, origin, direction, t_max, true, statistics);
+    }
+#endif
+    (void)approximate;
+    exact_query q;
+    aset_real moved = advance(tracer->scene, origin, direction);
+    probe ray = probe_make(vec_along(origin, moved, direction), direction);
+    return exact(&q, tracer, &ray, t_max - moved, true, statistics);
+}
+
+void query_surface(aset_hit *surface, const aset_tracer *tracer, const query_hit *hit, aset_vec3 origin,
+                   aset_vec3 direction) {
+    surface->t = hit->t;
+    surface->point = vec_along(origin, hit->t, direction);
+    surface->object = hit->object;
+    surface->cell = 0;
+#if ASET_WITH_APPROXIMATION
+    if (hit->object == ASET_NO_OBJECT) {
+        aset_real towards = (hit->face & 1) != 0 ? R(1) : R(-1);
+        int axis = hit->face / 2;
+        surface->cell = hit->cell;
+        surface->geometric = vec(axis == 0 ? towards : 0, axis == 1 ? towards : 0, axis == 2 ? towards : 0);
+        surface->normal = surface->geometric;
+        surface->material = summary_texture(tracer->summary, hit->cell);
+        return;
+    }
+#endif
+    object_normals(tracer->scene, hit->object, surface->point, &surface->normal, &surface->geometric);
+    surface->material = shape_of(tracer->scene, hit->object).material;
+}
+
+static bool can_approximate(const aset_tracer *tracer) {
+#if ASET_WITH_APPROXIMATION
+    return tracer->summary != NULL;
+#else
+    (void)tracer;
+    return false;
+#endif
+}
+
+/* A caller's ray, checked; its direction and t_max in unit lengths. length: of the caller's direction. */
+static aset_status accept_ray(const aset_tracer *tracer, const aset_ray *ray, bool approximate, aset_vec3 *direction,
+                              aset_real *length) {
+    if (tracer == NULL || ray == NULL || tracer->scene == NULL || tracer->space == NULL) {
+        return ASET_ERR_ARGUMENT;
+    }
+    *direction = vec_unit(ray->direction);
+    *length = vec_length(ray->direction);
+    bool fine = vec_finite(ray->origin) && vec_finite(ray->direction) && real_finite(*length) && *length > 0 &&
+                ray->t_max == ray->t_max && (!approximate || can_approximate(tracer));
+    return fine ? ASET_OK : ASET_ERR_ARGUMENT;
+}
+
+aset_status aset_closest_hit(bool *found, aset_hit *hit, const aset_tracer *tracer, const aset_ray *ray,
+                             bool approximate, aset_statistics *statistics) {
+    aset_vec3 direction;
+    aset_real length;
+    aset_statistics ignored = {0};
+    query_hit q;
+    if (found == NULL || hit == NULL) {
+        return ASET_ERR_ARGUMENT;
+    }
+    aset_status status = accept_ray(tracer, ray, approximate, &direction, &length);
+    if (status != ASET_OK) {
+        return status;
+    }
+    *found = query_closest(&q, tracer, ray->origin, direction, ray->t_max * length, approximate,
+                           statistics != NULL ? statistics : &ignored);
+    if (*found) {
+        query_surface(hit, tracer, &q, ray->origin, direction);
+        hit->t = q.t / length;
+    }
+    return ASET_OK;
+}
+
+aset_status aset_any_hit(bool *found, const aset_tracer *tracer, const aset_ray *ray, bool approximate,
+                         aset_statistics *statistics) {
+    aset_vec3 direction;
+    aset_real length;
+    aset_statistics ignored = {0};
+    if (found == NULL) {
+        return ASET_ERR_ARGUMENT;
+    }
+    aset_status status = accept_ray(tracer, ray, approximate, &direction, &length);
+    if (status == ASET_OK) {
+        *found = query_any(tracer, ray->origin, direction, ray->t_max * length, approximate,
+                           statistics != NULL ? statistics : &ignored);
+    }
+    return status;
+}

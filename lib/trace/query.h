@@ -1,0 +1,27 @@
+/* query.h - one ray against a space, exact or approximate: the two consumers of the common walk. */
+#ifndef ASET_TRACE_QUERY_H
+#define ASET_TRACE_QUERY_H
+
+#include "aset/trace.h"
+#include "base/vec.h"
+
+/* What a closest-hit query found. */
+typedef struct query_hit {
+    aset_real t;
+    uint32_t object; /* exact; ASET_NO_OBJECT for a cell */
+    uint32_t cell;   /* approximate: dense number */
+    int face;        /* approximate: axis * 2, + 1 going down */
+    bool curtailed;  /* approximate: the ray was trapped, and hit nothing */
+} query_hit;
+
+/* direction: of unit length. False: nothing hit (or curtailed). */
+bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                   bool approximate, aset_statistics *statistics);
+bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
+               aset_statistics *statistics);
+
+/* Point, normals and material of a hit. */
+void query_surface(aset_hit *surface, const aset_tracer *tracer, const query_hit *hit, aset_vec3 origin,
+                   aset_vec3 direction);
+
+#endif

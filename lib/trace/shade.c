@@ -1,0 +1,111 @@
+/*
+ * shade.c - Whitted's model (1980): ambient, diffuse, Phong's highlight, shadows, directions of reflected and refracted rays.
+ *
+ * New rays start off the surface by nudge along its geometric normal. The point of a hit errs by a few units in the last
+ * place of the numbers it is made of, |point| and t, so the nudge is NUDGE of those: no length in scene units.
+ */
+#include "trace/shade.h"
+
+#include "trace/light.h"
+
+#define AMBIENT R(0.1)
+#define NUDGE (32 * REAL_UNIT)
+
+bool policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t depth) {
+#if ASET_WITH_APPROXIMATION
+    return tracer->summary != NULL && (tracer->approx_kinds & (uint32_t)kind) != 0 && depth >= tracer->approx_depth;
+#else
+    (void)tracer;
+    (void)kind;
+    (void)depth;
+    return false;
+#endif
+}
+
+void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 origin, aset_vec3 direction) {
+    query_surface(&s->hit, tracer, hit, origin, direction);
+    s->direction = direction;
+    s->entering = vec_dot(s->hit.geometric, direction) <= 0;
+    s->facing = s->entering ? s->hit.geometric : vec_scale(s->hit.geometric, -1);
+    s->normal = s->entering ? s->hit.normal : vec_scale(s->hit.normal, -1);
+    s->nudge = (vec_largest(s->hit.point) + s->hit.t) * NUDGE;
+}
+
+aset_vec3 shade_start(const shading *s, aset_vec3 direction) {
+    return vec_along(s->hit.point, vec_dot(direction, s->facing) < 0 ? -s->nudge : s->nudge, s->facing);
+}
+
+static bool in_shadow(const aset_tracer *tracer, const shading *s, const light_ray *towards, uint32_t depth,
+                      aset_statistics *statistics) {
+    bool approximate = policy_approximate(tracer, ASET_SHADOW, depth);
+    bool hit = query_any(tracer, shade_start(s, towards->direction), towards->direction, towards->distance, approximate,
+                         statistics);
+    statistics->shadow++;
+    statistics->shadow_hit += hit;
+    return hit;
+}
+
+/*
+ * The normal that faces the lights: turned to the side that is seen. The SPD's rules take a transmitting surface's as given:
+ * the far side of a glass sphere, seen from within, is lit from without (so Havran's counts for mount come out).
+ */
+static aset_vec3 lit_normal(const aset_tracer *tracer, const shading *s) {
+#if ASET_WITH_REFRACTION
+    if (tracer->spd_rules && s->hit.material->transmittance > 0) {
+        return s->hit.normal;
+    }
+#else
+    (void)tracer;
+#endif
+    return s->normal;
+}
+
+static aset_real highlight(const shading *s, aset_vec3 normal, aset_vec3 to_light, aset_real n_dot_l) {
+    aset_vec3 mirrored = vec_sub(vec_scale(normal, 2 * n_dot_l), to_light);
+    aset_real r_dot_v = -vec_dot(mirrored, s->direction);
+    return r_dot_v > 0 ? real_power(r_dot_v, s->hit.material->shine) : 0;
+}
+
+aset_colour shade_local(const aset_tracer *tracer, const shading *s, uint32_t depth, aset_statistics *statistics) {
+    const aset_scene *scene = tracer->scene;
+    const aset_material *m = s->hit.material;
+    aset_vec3 normal = lit_normal(tracer, s);
+    aset_colour sum = {AMBIENT * m->fill.r, AMBIENT * m->fill.g, AMBIENT * m->fill.b};
+    for (uint32_t i = 0; i < scene->counts.lights; i++) {
+        light_ray towards;
+        if (!light_towards(&towards, scene, scene->lights + i, s->hit.point)) {
+            continue;
+        }
+        aset_real n_dot_l = vec_dot(normal, towards.direction);
+        if (!(n_dot_l > 0) || in_shadow(tracer, s, &towards, depth, statistics)) {
+            continue;
+        }
+        aset_real diffuse = m->diffuse * n_dot_l;
+        aset_real specular = m->specular > 0 ? m->specular * highlight(s, normal, towards.direction, n_dot_l) : 0;
+        sum.r += (m->fill.r * diffuse + specular) * towards.colour.r;
+        sum.g += (m->fill.g * diffuse + specular) * towards.colour.g;
+        sum.b += (m->fill.b * diffuse + specular) * towards.colour.b;
+    }
+    return sum;
+}
+
+aset_vec3 shade_reflected(const shading *s) {
+    aset_real twice = 2 * vec_dot(s->normal, s->direction);
+    return vec_unit(vec_along(s->direction, -twice, s->normal));
+}
+
+#if ASET_WITH_REFRACTION
+bool shade_refracted(const shading *s, aset_vec3 *direction) {
+    aset_real index = s->hit.material->refraction_index;
+    index = index > 0 ? index : 1;
+    aset_real ratio = s->entering ? 1 / index : index;
+    aset_real cosine = -vec_dot(s->normal, s->direction);
+    aset_real under_root = 1 - ratio * ratio * (1 - cosine * cosine);
+    if (!(under_root >= 0)) {
+        return false;
+    }
+    aset_vec3 along = vec_scale(s->direction, ratio);
+    *direction = vec_unit(vec_along(along, ratio * cosine - real_sqrt(under_root), s->normal));
+    return true;
+}
+#endif

@@ -1,0 +1,35 @@
+/* shade.h - the light that leaves a hit surface by itself, and the rays that leave it. */
+#ifndef ASET_TRACE_SHADE_H
+#define ASET_TRACE_SHADE_H
+
+#include "trace/query.h"
+
+/* A hit, ready for shading. */
+typedef struct shading {
+    aset_hit hit;
+    aset_vec3 direction; /* of the ray that came */
+    aset_vec3 normal;    /* shading normal, on the side that is seen */
+    aset_vec3 facing;    /* geometric normal, on the side that the ray came from */
+    bool entering;       /* the ray came to the surface's front */
+    aset_real nudge;     /* how far new rays start from the surface */
+} shading;
+
+void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 origin, aset_vec3 direction);
+
+/* Whether rays of this kind and depth take the approximation: the one place that decides. */
+bool policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t depth);
+
+/* 0.1 fill + what the lights add; sends the shadow rays. depth: of the ray that hit. */
+aset_colour shade_local(const aset_tracer *tracer, const shading *s, uint32_t depth, aset_statistics *statistics);
+
+/* Where a ray that leaves the surface along direction starts: off the surface, on the side it goes to. */
+aset_vec3 shade_start(const shading *s, aset_vec3 direction);
+
+aset_vec3 shade_reflected(const shading *s);
+
+#if ASET_WITH_REFRACTION
+/* The refracted direction; false under total internal reflection. */
+bool shade_refracted(const shading *s, aset_vec3 *direction);
+#endif
+
+#endif

@@ -1,0 +1,56 @@
+#!/bin/bash
+# What the core asks of the outside, and that a program with other layout switches does not link: link.sh BUILD CC
+set -eu
+build=$1
+cc=$2
+core=$build/libaset.a
+dir=$build/link
+mkdir -p "$dir"
+bad=0
+
+# Undefined symbols: mem*, libm's square root, and what a compiler or a sanitizer adds by itself.
+outside=$(nm -u "$core" | awk '$1 == "U" { print $2 }' | sort -u | grep -vE '^(__asan|__ubsan|__stack_chk|__gcov|__tsan|_GLOBAL_OFFSET)' || true)
+defined=$(nm "$core" | awk 'NF == 3 && $2 ~ /[TRDB]/ { print $3 }' | sort -u)
+for symbol in $(comm -23 <(echo "$outside") <(echo "$defined")); do
+    case "$symbol" in
+    memcpy | memset | memmove | memcmp | strlen | sqrt | sqrtf) ;;
+    *) echo "link: the core asks for $symbol"; bad=1 ;;
+    esac
+done
+# Writable data (tables of pointers that only the loader writes do not count).
+writable=$(size -A "$core" | awk '$1 ~ /^\.(data|bss)(\.|$)/ && $1 !~ /^\.data\.rel\.ro/ { n += $2 } END { print n + 0 }')
+case "$build" in
+*sanitize*) ;;
+*) [ "$writable" = 0 ] || { echo "link: $writable bytes of writable data in the core"; bad=1; } ;;
+esac
+
+cat > "$dir/user.c" <<'END'
+#include <aset/aset.h>
+static ASET_ARENA_BLOCK(block, 64);
+int main(void) {
+    aset_arena arena;
+    return aset_arena_init(&arena, block, sizeof block);
+}
+END
+flags=""
+case "$build" in *sanitize*) flags="-fsanitize=address,undefined" ;; *double*) flags="-DASET_REAL_BITS=64" ;; esac
+# shellcheck disable=SC2086
+if ! $cc -std=c99 $flags -Iinclude "$dir/user.c" "$core" -lm -o "$dir/user" 2>"$dir/log"; then
+    echo "link: a program with the library's own switches does not link:"; cat "$dir/log"; bad=1
+fi
+other=64
+case "$build" in *double*) other=32 ;; esac
+for switch in ASET_REAL_BITS=$other "ASET_WITH_POLYGONS=0 -DASET_WITH_PATCHES=0" ASET_WITH_PATCHES=0 ASET_WITH_SPHERES=0 \
+    ASET_WITH_CONES=0 ASET_WITH_REFLECTION=0 ASET_WITH_REFRACTION=0 ASET_WITH_APPROXIMATION=0; do
+    base=$flags
+    case "$switch" in ASET_REAL_BITS*) base=${flags/-DASET_REAL_BITS=64/} ;; esac
+    # shellcheck disable=SC2086
+    if $cc -std=c99 $base -D$switch -Iinclude "$dir/user.c" "$core" -lm -o "$dir/user" 2>"$dir/log"; then
+        echo "link: a program with -D$switch links with a library without it"
+        bad=1
+    elif ! grep -q 'aset_arena_init__' "$dir/log"; then
+        echo "link: -D$switch fails for another reason:"; cat "$dir/log"; bad=1
+    fi
+done
+[ $bad = 0 ] && echo "link: the core asks for mem* and the square root only; other layout switches do not link"
+exit $bad

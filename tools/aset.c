@@ -1,0 +1,126 @@
+/*
+ * aset.c - the program: finds the command that the first word names and hands it the rest.
+ */
+#include "tool.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+typedef struct tool_command {
+    const char *name;
+    const char *text; /* one line for --help */
+    int (*run)(int argc, char **argv);
+} tool_command;
+
+static const tool_command commands[] = {
+    {"render", "draws a scene", command_render},
+    {"info", "counts, bounds and memory of a scene", command_info},
+    {"scene", "writes a procedural scene as NFF", command_scene},
+    {"compare", "the difference of two pictures", command_compare},
+};
+#define N_COMMANDS (sizeof commands / sizeof commands[0])
+
+static const char *const scene_extensions[] = {".nff", ".obj", ".stl", ".ply"};
+#define N_EXTENSIONS (sizeof scene_extensions / sizeof scene_extensions[0])
+
+/* What the short form puts before the user's own options for a model (all extensions but .nff): a draft. */
+static const char *const draft_words[] = {"--approx", "all", "--approx-depth", "0", "--cells", "plane", "--memory", "1M"};
+#define N_DRAFT_WORDS (sizeof draft_words / sizeof draft_words[0])
+
+static int print_help(void) {
+    (void)fputs("aset: draws three-dimensional scenes by exact or approximate ray tracing, in a fixed amount of memory.\n"
+                "\n"
+                "  aset COMMAND ...      one of the commands below\n"
+                "  aset SCENE OUT.png    short for: aset render SCENE -o OUT.png; for a model (.obj, .stl, .ply)\n"
+                "                        a draft: with --approx all --approx-depth 0 --cells plane --memory 1M\n"
+                "  aset COMMAND --help   all about a command\n"
+                "  aset --version        the version\n"
+                "\n"
+                "Commands:\n",
+                stdout);
+    for (size_t i = 0; i < N_COMMANDS; i++) {
+        (void)printf("  %-10s  %s\n", commands[i].name, commands[i].text);
+    }
+    return tool_help("\n"
+                     "The file - is standard output. Files are written whole or not at all.\n"
+                     "Exit status: 0 done, 1 the work failed (a bad file, too little memory), 2 the words are wrong.\n");
+}
+
+static bool is_scene(const char *word) {
+    struct stat status;
+    if (stat(word, &status) == 0 && !S_ISDIR(status.st_mode)) {
+        return true;
+    }
+    for (size_t i = 0; i < N_EXTENSIONS; i++) {
+        if (tool_has_extension(word, scene_extensions[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_model(const char *word) {
+    for (size_t i = 1; i < N_EXTENSIONS; i++) {
+        if (tool_has_extension(word, scene_extensions[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* SCENE OUT [options], in argv[0] and on, as render DRAFT... SCENE -o OUT [options]. */
+static int run_short(int argc, char **argv) {
+    if (argc < 2 || (argv[1][0] == '-' && argv[1][1] != '\0')) {
+        tool_error(NULL, 0, "%s: where should the picture go? aset SCENE OUT.png, or aset render --help", argv[0]);
+        return TOOL_USAGE;
+    }
+    /* the program's words render, -o and NULL besides the draft's and the user's */
+    char **words = malloc(((size_t)argc + N_DRAFT_WORDS + 3u) * sizeof *words);
+    if (words == NULL) {
+        tool_error(NULL, 0, "no memory for the command's words");
+        return TOOL_FAILED;
+    }
+    int n = 0;
+    words[n++] = (char *)"render";
+    for (size_t i = 0; is_model(argv[0]) && i < N_DRAFT_WORDS; i++) {
+        words[n++] = (char *)draft_words[i];
+    }
+    words[n++] = argv[0];
+    words[n++] = (char *)"-o";
+    for (int i = 1; i < argc; i++) {
+        words[n++] = argv[i];
+    }
+    words[n] = NULL;
+    int status = command_render(n, words);
+    free(words);
+    return status;
+}
+
+static int run(int argc, char **argv) {
+    if (argc < 2) {
+        tool_error(NULL, 0, "a command or a scene is missing; aset --help lists the commands");
+        return TOOL_USAGE;
+    }
+    for (size_t i = 0; i < N_COMMANDS; i++) {
+        if (strcmp(argv[1], commands[i].name) == 0) {
+            return commands[i].run(argc - 1, argv + 1);
+        }
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+        return print_help();
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        return tool_help("aset " ASET_VERSION "\n");
+    }
+    if (is_scene(argv[1])) {
+        return run_short(argc - 1, argv + 1);
+    }
+    tool_error(NULL, 0, "there is no command and no file \"%s\"; aset --help lists the commands", argv[1]);
+    return TOOL_USAGE;
+}
+
+int main(int argc, char **argv) {
+    tool_output_guard();
+    return run(argc, argv);
+}

@@ -1,0 +1,176 @@
+/*
+ * prepare.c - a scene, a space over it, its summary and the threads' scratches, all in one arena of the size asked for.
+ *
+ * The file is read twice: once to count, once to build in exactly the bytes counted.
+ */
+#include "prepare.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+const aset_method *const tool_methods[] = {&aset_mset, &aset_brute, NULL};
+
+const aset_method *tool_method_find(const char *name) {
+    for (size_t i = 0; tool_methods[i] != NULL; i++) {
+        if (strcmp(aset_method_name(tool_methods[i]), name) == 0) {
+            return tool_methods[i];
+        }
+    }
+    return NULL;
+}
+
+settings settings_default(void) {
+    settings s;
+    memset(&s, 0, sizeof s);
+    s.method = &aset_mset;
+    s.approx_depth = 1;
+    s.curtail = 0.5;
+    s.memory = 8u << 20;
+    s.samples = 1;
+    s.depth = ASET_DEPTH_DEFAULT;
+    s.threads = 1;
+    return s;
+}
+
+static bool approximates(const settings *s) {
+    return s->approx_kinds != 0;
+}
+
+static size_t scratch_bytes(const settings *s) {
+    return s->threads * ASET_BYTES_SCRATCH(s->depth);
+}
+
+static aset_space_options space_options(const settings *s, const aset_scene *scene) {
+    aset_space_options options;
+    memset(&options, 0, sizeof options);
+    memcpy(options.divisions, s->grid, sizeof options.divisions);
+    options.textures = approximates(s) ? aset_summary_capacity(scene) : 0;
+    return options;
+}
+
+/* The error of a budget that is too small: how much would do; with automatic divisions, what a single voxel takes. */
+static void tell_need(tool_source *source, const settings *s, const aset_counts *counts) {
+    const uint32_t one[3] = {1, 1, 1};
+    bool is_auto = s->grid[0] == 0;
+    measured m;
+    aset_space_size size;
+    size_t summary = 0;
+    if (!measured_open(&m, source, counts)) {
+        return;
+    }
+    if (measured_space(&m, source->path, s->method, is_auto ? one : s->grid, &size, approximates(s) ? &summary : NULL)) {
+        tool_error(source->path, 0, "the picture needs %zu bytes%s, has %" PRIu64,
+                   m.scene_bytes + scratch_bytes(s) + size.total + summary, is_auto ? " at least" : "", s->memory);
+    }
+    free(m.block);
+}
+
+/* A view for a scene: the file's, with the command line's changes. */
+static bool choose_view(prepared *p, const settings *s) {
+    aset_view *view = &p->view;
+    *view = p->scene.view;
+    view->from = s->has_from ? s->from : view->from;
+    view->at = s->has_at ? s->at : view->at;
+    view->up = s->has_up ? s->up : view->up;
+    if (s->has_angle) {
+        view->angle_deg = (aset_real)s->angle_deg;
+        view->height = 0;
+    }
+    view->width_px = s->width > 0 ? s->width : view->width_px > 0 ? view->width_px : 512;
+    view->height_px = s->height > 0 ? s->height : view->height_px > 0 ? view->height_px : 512;
+    return true;
+}
+
+static void choose_tracer(prepared *p, const settings *s) {
+    aset_tracer *t = &p->tracer;
+    memset(t, 0, sizeof *t);
+    t->scene = &p->scene;
+    t->space = &p->space;
+    t->summary = approximates(s) ? &p->summary : NULL;
+    t->approx_kinds = s->approx_kinds;
+    t->approx_depth = s->approx_depth;
+    t->curtail = (aset_real)s->curtail;
+    t->curtail_more = s->curtail_more;
+    t->depth = s->depth;
+    t->samples = s->samples;
+    t->spd_rules = s->spd_rules;
+}
+
+/* Scene, scratches, space and summary in the arena. */
+static aset_status fill_arena(prepared *p, const settings *s, tool_source *source, const aset_counts *counts, bool *told) {
+    aset_status status = aset_scene_init(&p->scene, &p->arena, counts);
+    if (status != ASET_OK) {
+        return status;
+    }
+    double start = tool_seconds();
+    aset_sink sink = aset_scene_sink(&p->scene);
+    if (!tool_source_read(source, &sink)) {
+        *told = true;
+        return ASET_ERR_SYNTAX;
+    }
+    p->load_s += tool_seconds() - start;
+    start = tool_seconds();
+    for (uint32_t i = 0; i < s->threads && status == ASET_OK; i++) {
+        status = aset_scratch_init(&p->scratches[i], s->depth, &p->arena);
+    }
+    aset_space_options options = space_options(s, &p->scene);
+    if (status == ASET_OK) {
+        status = aset_space_build(&p->space, &p->scene, s->method, &options, &p->arena);
+    }
+    if (status == ASET_OK && approximates(s)) {
+        status = aset_summary_build(&p->summary, &p->space, options.textures, &p->arena);
+    }
+    p->build_s = tool_seconds() - start;
+    return status;
+}
+
+static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
+    aset_counter counter;
+    aset_sink sink = aset_counter_sink(&counter);
+    double start = tool_seconds();
+    if (!tool_source_read(source, &sink)) {
+        return false;
+    }
+    p->load_s = tool_seconds() - start;
+    /* the SPD's rule: opaque surfaces are one-sided, but not in a scene with patches (the teapot) */
+    source->one_sided_opaque = s->spd_rules && counter.counts.patches == 0;
+    p->block = malloc(s->memory > 0 ? (size_t)s->memory : 1);
+    p->scratches = calloc(s->threads, sizeof *p->scratches);
+    if (p->block == NULL || p->scratches == NULL || aset_arena_init(&p->arena, p->block, (size_t)s->memory) != ASET_OK) {
+        tool_error(source->path, 0, "the machine has no block of %" PRIu64 " bytes", s->memory);
+        return false;
+    }
+    bool told = false;
+    aset_status status = fill_arena(p, s, source, &counter.counts, &told);
+    if (status == ASET_ERR_NOMEM) {
+        tell_need(source, s, &counter.counts);
+    } else if (status != ASET_OK && !told) {
+        tool_error(source->path, 0, "%s", aset_status_text(status));
+    }
+    return status == ASET_OK && choose_view(p, s);
+}
+
+bool prepare(prepared *p, const settings *s, const char *path) {
+    tool_source source;
+    memset(p, 0, sizeof *p);
+    p->path = path;
+    if (!tool_source_open(&source, path)) {
+        return false;
+    }
+    bool done = prepare_from(p, s, &source);
+    tool_source_close(&source);
+    if (!done) {
+        prepare_free(p);
+        return false;
+    }
+    choose_tracer(p, s);
+    return true;
+}
+
+void prepare_free(prepared *p) {
+    free(p->block);
+    free(p->scratches);
+    p->block = NULL;
+    p->scratches = NULL;
+}

@@ -1,0 +1,44 @@
+#!/bin/bash
+# The README's price list: bytes, time and error of exact and approximate pictures: prices.sh ASET DIRECTORY
+# Times are ratios to the exact picture's, build and drawing, medians of interleaved runs on one thread.
+set -eu
+aset=$1
+dir=$2
+runs=${RUNS:-5}
+mkdir -p "$dir"
+number() { sed -n "s/.*\"$2\":\([0-9.]*\).*/\1/p" "$1"; }
+seconds() { echo "$(number "$1" build_s) $(number "$1" render_s)" | awk '{ print $1 + $2 }'; }
+median() { sort -n | awk '{ x[NR] = $1 } END { print x[int((NR + 1) / 2)] }'; }
+echo "| scene, divisions | drawn | bytes | time | PSNR |"
+echo "|---|---|---|---|---|"
+for row in "snow 100" "snow 30" "gears 48" "tetra 64"; do
+    # shellcheck disable=SC2086
+    set -- $row
+    scene=$1
+    grid=$2
+    "$aset" scene "$scene" -o "$dir/$scene.nff"
+    ways="exact:-m,mset aset:-m,aset draft:-m,aset,--approx-depth,0"
+    rm -f "$dir"/*.times
+    for run in $(seq "$runs"); do
+        for way in $ways; do
+            name=${way%%:*}
+            # shellcheck disable=SC2046
+            "$aset" render "$dir/$scene.nff" $(echo "${way#*:}" | tr ',' ' ') --grid "$grid" -o "$dir/$scene-$name.png" \
+                --stats "$dir/$name.json" --quiet
+            seconds "$dir/$name.json" >> "$dir/$name.times"
+        done
+    done
+    exact=$(median < "$dir/exact.times")
+    for way in $ways; do
+        name=${way%%:*}
+        case $name in
+        exact) label="exact (MSET)" ;;
+        aset) label="approximate from the second ray on" ;;
+        *) label="everything approximate" ;;
+        esac
+        db=$("$aset" compare --json "$dir/$scene-exact.png" "$dir/$scene-$name.png" | sed -n 's/.*"psnr": *\([0-9.]*\).*/\1/p')
+        [ $name = exact ] && db="" || db="$(printf %.1f "$db") dB"
+        printf '| %s, %s | %s | %s | %.2f | %s |\n' "$scene" "$grid" "$label" "$(number "$dir/$name.json" peak)" \
+            "$(echo "$(median < "$dir/$name.times") $exact" | awk '{ print $1 / $2 }')" "$db"
+    done
+done

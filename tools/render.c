@@ -1,0 +1,380 @@
+/*
+ * render.c - the command `aset render`: draws a scene row by row, with any number of threads, into a picture file.
+ *
+ * Threads take the next row each; a finished row waits until those above it are written, so the file is written in order and
+ * no thread is ever more than one row ahead of the slowest. No frame is held.
+ */
+#include "prepare.h"
+
+#include <inttypes.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define THREADS_MAX 256u
+
+static const char help[] =
+    "aset render SCENE [-o OUT.png]: draws a scene exactly or approximately, in a fixed block of memory.\n"
+    "SCENE is an .nff file, or - for NFF on standard input. Without -o the picture is drawn and thrown away.\n"
+    "\n"
+    "  -o, --output FILE       .png or .ppm; - for PNG on standard output\n"
+    "  -m, --method NAME       mset, brute; aset stands for mset --approx all --approx-depth 1; default mset\n"
+    "      --approx KINDS      rays that may be approximate: primary,shadow,reflected,refracted, all or none; default none\n"
+    "      --approx-depth L    rays of depth L and deeper are (the eye ray has depth 0); default 1\n"
+    "      --grid N            divisions on every axis; or NXxNYxNZ, or auto (as many as pay and fit); default auto\n"
+    "      --cells flat        what a cell remembers: flat, the paper's average texture\n"
+    "      --curtail F         trapped rays: fraction of a voxel's diagonal, 0 for off; default 0.5\n"
+    "      --curtail-when W    less or more: which side of it is curtailed; default less\n"
+    "      --memory BYTES      the arena (K = 1024, M): not one byte more is used; default 8M\n"
+    "  -s, --size WxH          picture; default the scene's, else 512x512\n"
+    "      --samples N         rays a pixel: 1, 4, 9, 16 ...; default 1\n"
+    "      --depth N           rays in a chain, the eye ray being 1; default 5\n"
+    "      --rules spd         the SPD testing procedure: (W + 1) x (H + 1) rays through pixel corners, opaque one-sided\n"
+    "      --rows A:B          only the rows A to B - 1 of the picture\n"
+    "  -j, --threads N         default 1\n"
+    "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   the camera, instead of the scene's\n"
+    "      --stats FILE        statistics as JSON; - for standard output\n"
+    "      --report            statistics as text on standard output\n"
+    "  -q, --quiet             no progress bar\n"
+    "  -h, --help              this text\n";
+
+enum {
+    OPTION_APPROX = 256,
+    OPTION_APPROX_DEPTH,
+    OPTION_GRID,
+    OPTION_CELLS,
+    OPTION_CURTAIL,
+    OPTION_CURTAIL_WHEN,
+    OPTION_MEMORY,
+    OPTION_SAMPLES,
+    OPTION_DEPTH,
+    OPTION_RULES,
+    OPTION_ROWS,
+    OPTION_FROM,
+    OPTION_AT,
+    OPTION_UP,
+    OPTION_ANGLE,
+    OPTION_STATS,
+    OPTION_REPORT
+};
+
+static const struct option longs[] = {
+    {"output", required_argument, NULL, 'o'},
+    {"method", required_argument, NULL, 'm'},
+    {"approx", required_argument, NULL, OPTION_APPROX},
+    {"approx-depth", required_argument, NULL, OPTION_APPROX_DEPTH},
+    {"grid", required_argument, NULL, OPTION_GRID},
+    {"cells", required_argument, NULL, OPTION_CELLS},
+    {"curtail", required_argument, NULL, OPTION_CURTAIL},
+    {"curtail-when", required_argument, NULL, OPTION_CURTAIL_WHEN},
+    {"memory", required_argument, NULL, OPTION_MEMORY},
+    {"size", required_argument, NULL, 's'},
+    {"samples", required_argument, NULL, OPTION_SAMPLES},
+    {"depth", required_argument, NULL, OPTION_DEPTH},
+    {"rules", required_argument, NULL, OPTION_RULES},
+    {"rows", required_argument, NULL, OPTION_ROWS},
+    {"threads", required_argument, NULL, 'j'},
+    {"from", required_argument, NULL, OPTION_FROM},
+    {"at", required_argument, NULL, OPTION_AT},
+    {"up", required_argument, NULL, OPTION_UP},
+    {"angle", required_argument, NULL, OPTION_ANGLE},
+    {"stats", required_argument, NULL, OPTION_STATS},
+    {"report", no_argument, NULL, OPTION_REPORT},
+    {"quiet", no_argument, NULL, 'q'},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
+};
+
+/* What render was asked for beside the settings. */
+typedef struct request {
+    settings settings;
+    const char *scene, *output, *stats;
+    bool report, quiet, has_rows, has_approx, has_approx_depth, wants_help, is_aset;
+    uint32_t first_row, end_row;
+} request;
+
+static bool parse_method(request *r, const char *text) {
+    r->is_aset = strcmp(text, "aset") == 0;
+    const aset_method *method = r->is_aset ? &aset_mset : tool_method_find(text);
+    if (method == NULL) {
+        tool_error(NULL, 0, "--method: \"%s\" is no method, expected mset, aset or brute", text);
+        return false;
+    }
+    r->settings.method = method;
+    return true;
+}
+
+static bool parse_approx(request *r, const char *text) {
+    static const tool_word kinds[] = {{"primary", ASET_PRIMARY},     {"shadow", ASET_SHADOW}, {"reflected", ASET_REFLECTED},
+                                      {"refracted", ASET_REFRACTED}, {"all", ASET_ALL_KINDS}, {"none", 0},
+                                      {NULL, 0}};
+    unsigned mask;
+    if (!tool_parse_words("--approx", text, kinds, &mask)) {
+        return false;
+    }
+    r->settings.approx_kinds = mask;
+    r->has_approx = true;
+    return true;
+}
+
+static bool parse_samples(settings *s, const char *text) {
+    uint32_t n, side = 1;
+    if (!tool_parse_count("--samples", text, 1, 4096, &n)) {
+        return false;
+    }
+    while (side * side < n) {
+        side++;
+    }
+    if (side * side != n) {
+        tool_error(NULL, 0, "--samples: %" PRIu32 " is no square, expected 1, 4, 9, 16 ...", n);
+        return false;
+    }
+    s->samples = side;
+    return true;
+}
+
+static bool parse_more(request *r, int option) {
+    static const tool_word cells[] = {{"flat", 0}, {NULL, 0}}, rules[] = {{"spd", 1}, {NULL, 0}},
+                           sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}};
+    settings *s = &r->settings;
+    unsigned word = 0;
+    switch (option) {
+    case OPTION_CELLS: return tool_parse_word("--cells", optarg, cells, &word);
+    case OPTION_CURTAIL: return tool_parse_real("--curtail", optarg, 0, 1e6, &s->curtail);
+    case OPTION_CURTAIL_WHEN:
+        if (!tool_parse_word("--curtail-when", optarg, sides, &word)) {
+            return false;
+        }
+        s->curtail_more = word != 0;
+        return true;
+    case OPTION_RULES: s->spd_rules = true; return tool_parse_word("--rules", optarg, rules, &word);
+    case OPTION_ROWS: r->has_rows = true; return tool_parse_range("--rows", optarg, 65536, &r->first_row, &r->end_row);
+    case OPTION_FROM: s->has_from = true; return tool_parse_vec3("--from", optarg, &s->from);
+    case OPTION_AT: s->has_at = true; return tool_parse_vec3("--at", optarg, &s->at);
+    case OPTION_UP: s->has_up = true; return tool_parse_vec3("--up", optarg, &s->up);
+    case OPTION_ANGLE: s->has_angle = true; return tool_parse_real("--angle", optarg, 0.001, 179.999, &s->angle_deg);
+    case OPTION_STATS: r->stats = optarg; return true;
+    case OPTION_REPORT: r->report = true; return true;
+    default: return false;
+    }
+}
+
+static bool parse_option(request *r, int option) {
+    settings *s = &r->settings;
+    switch (option) {
+    case 'o': r->output = optarg; return tool_picture_path_ok(optarg);
+    case 'm': return parse_method(r, optarg);
+    case OPTION_APPROX: return parse_approx(r, optarg);
+    case OPTION_APPROX_DEPTH:
+        r->has_approx_depth = true;
+        return tool_parse_count("--approx-depth", optarg, 0, ASET_DEPTH_MAX, &s->approx_depth);
+    case OPTION_GRID: return tool_parse_grid("--grid", optarg, ASET_DIVISIONS_MAX, s->grid);
+    case OPTION_MEMORY: return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &s->memory);
+    case 's': return tool_parse_size("--size", optarg, &s->width, &s->height);
+    case OPTION_SAMPLES: return parse_samples(s, optarg);
+    case OPTION_DEPTH: return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &s->depth);
+    case 'j': return tool_parse_count("--threads", optarg, 1, THREADS_MAX, &s->threads);
+    case 'q': r->quiet = true; return true;
+    case 'h': r->wants_help = true; return true;
+    default: return parse_more(r, option);
+    }
+}
+
+static bool parse_request(request *r, int argc, char **argv) {
+    int option;
+    memset(r, 0, sizeof *r);
+    r->settings = settings_default();
+    while ((option = tool_option_next(argc, argv, "o:m:s:j:qh", longs)) != -1) {
+        if (option == '?' || !parse_option(r, option)) {
+            return false;
+        }
+        if (r->wants_help) {
+            return true;
+        }
+    }
+    if (argc - optind != 1) {
+        tool_error(NULL, 0, "render: expected one scene, got %d words; aset render --help tells more", argc - optind);
+        return false;
+    }
+    r->scene = argv[optind];
+    if (r->is_aset && !r->has_approx) {
+        r->settings.approx_kinds = ASET_ALL_KINDS;
+    }
+    if (r->output != NULL && strcmp(r->output, "-") == 0 && (r->report || (r->stats != NULL && strcmp(r->stats, "-") == 0))) {
+        tool_error(NULL, 0, "--stats: the picture already goes to standard output, expected a file for one of them");
+        return false;
+    }
+    return true;
+}
+
+/* What the threads share; the lock guards next, written and failed. */
+typedef struct crew {
+    const prepared *p;
+    tool_picture *file; /* NULL: thrown away */
+    uint32_t first, end, columns, next, written;
+    bool failed;
+    pthread_mutex_t lock;
+    pthread_cond_t turn;
+} crew;
+
+typedef struct worker {
+    crew *crew;
+    aset_scratch *scratch;
+    aset_statistics statistics;
+    uint8_t *row;
+} worker;
+
+static void draw_rows(worker *w) {
+    crew *c = w->crew;
+    aset_picture picture;
+    memset(&picture, 0, sizeof picture);
+    picture.width = c->p->view.width_px;
+    picture.height = c->p->view.height_px;
+    picture.format = ASET_RGB888;
+    picture.pixels = w->row;
+    (void)pthread_mutex_lock(&c->lock);
+    while (!c->failed && c->next < c->end) {
+        uint32_t row = c->next++;
+        (void)pthread_mutex_unlock(&c->lock);
+        aset_status status =
+            aset_render_rows(&c->p->tracer, &c->p->view, &picture, row, 1, w->scratch, &w->statistics);
+        (void)pthread_mutex_lock(&c->lock);
+        while (!c->failed && c->written != row) {
+            (void)pthread_cond_wait(&c->turn, &c->lock);
+        }
+        if (status != ASET_OK && !c->failed) {
+            tool_error(c->p->path, 0, "%s", aset_status_text(status));
+            c->failed = true;
+        }
+        if (!c->failed && c->file != NULL && !tool_picture_row(c->file, w->row)) {
+            c->failed = true;
+        }
+        c->written++;
+        tool_progress_step(c->written - c->first);
+        (void)pthread_cond_broadcast(&c->turn);
+    }
+    (void)pthread_mutex_unlock(&c->lock);
+}
+
+static void *work(void *context) {
+    draw_rows(context);
+    return NULL;
+}
+
+/* Draws with as many threads as there are scratches; this thread is the first of them. */
+static bool draw(crew *c, uint32_t n_threads, aset_statistics *statistics) {
+    worker *workers = calloc(n_threads, sizeof *workers);
+    pthread_t *threads = calloc(n_threads, sizeof *threads);
+    uint8_t *rows = malloc((size_t)n_threads * c->columns * 3);
+    uint32_t n_started = 1;
+    bool ready = workers != NULL && threads != NULL && rows != NULL;
+    if (!ready) {
+        tool_error(c->p->path, 0, "no memory for %" PRIu32 " rows of the picture", n_threads);
+        c->failed = true;
+    }
+    for (uint32_t i = 0; ready && i < n_threads; i++) {
+        workers[i].crew = c;
+        workers[i].scratch = &c->p->scratches[i];
+        workers[i].row = rows + (size_t)i * c->columns * 3;
+    }
+    while (ready && n_started < n_threads && pthread_create(&threads[n_started], NULL, work, &workers[n_started]) == 0) {
+        n_started++; /* fewer threads than asked for draw the same picture */
+    }
+    if (ready) {
+        draw_rows(&workers[0]);
+    }
+    for (uint32_t i = 1; ready && i < n_started; i++) {
+        (void)pthread_join(threads[i], NULL);
+    }
+    for (uint32_t i = 0; ready && i < n_started; i++) {
+        aset_statistics_add(statistics, &workers[i].statistics);
+    }
+    free(workers);
+    free(threads);
+    free(rows);
+    return !c->failed;
+}
+
+static bool draw_picture(const request *r, const prepared *p, aset_statistics *statistics) {
+    crew c;
+    memset(&c, 0, sizeof c);
+    uint32_t extra = r->settings.spd_rules, rows = p->view.height_px + extra;
+    c.p = p;
+    c.columns = p->view.width_px + extra;
+    c.first = c.next = c.written = r->has_rows ? r->first_row : 0;
+    c.end = r->has_rows ? r->end_row : rows;
+    if (c.end > rows) {
+        tool_error(NULL, 0, "--rows: the picture has %" PRIu32 " rows, %" PRIu32 " is behind the last", rows, c.end - 1);
+        return false;
+    }
+    if (r->output != NULL) {
+        c.file = tool_picture_open(r->output, c.columns, c.end - c.first, 3);
+        if (c.file == NULL) {
+            return false;
+        }
+    }
+    (void)pthread_mutex_init(&c.lock, NULL);
+    (void)pthread_cond_init(&c.turn, NULL);
+    tool_progress_start("rows", c.end - c.first, r->quiet);
+    bool done = draw(&c, r->settings.threads, statistics);
+    tool_progress_end();
+    (void)pthread_cond_destroy(&c.turn);
+    (void)pthread_mutex_destroy(&c.lock);
+    if (c.file != NULL) {
+        if (done) {
+            done = tool_picture_close(c.file);
+        } else {
+            tool_picture_abort(c.file);
+        }
+    }
+    return done;
+}
+
+typedef size_t (*report_writer)(char *buffer, size_t size, const aset_report *report);
+
+static bool write_report(const char *path, const aset_report *report, report_writer writer) {
+    tool_output output;
+    size_t n = writer(NULL, 0, report);
+    char *text = malloc(n + 1);
+    if (text == NULL || !tool_output_open(&output, path)) {
+        free(text);
+        return false;
+    }
+    (void)writer(text, n + 1, report);
+    bool done = tool_output_write(&output, text, n);
+    free(text);
+    if (!done) {
+        tool_output_abort(&output);
+        return false;
+    }
+    return tool_output_close(&output);
+}
+
+static int render(const request *r) {
+    prepared p;
+    aset_statistics statistics;
+    memset(&statistics, 0, sizeof statistics);
+    if (!prepare(&p, &r->settings, r->scene)) {
+        return TOOL_FAILED;
+    }
+    double start = tool_seconds();
+    bool done = draw_picture(r, &p, &statistics);
+    aset_report report = {&p.tracer, &p.arena, &statistics, aset_method_name(r->settings.method), "flat",
+                          p.load_s,  p.build_s, tool_seconds() - start};
+    if (done && r->stats != NULL) {
+        done = write_report(r->stats, &report, aset_report_json);
+    }
+    if (done && r->report) {
+        done = write_report("-", &report, aset_report_text);
+    }
+    prepare_free(&p);
+    return done ? TOOL_DONE : TOOL_FAILED;
+}
+
+int command_render(int argc, char **argv) {
+    request r;
+    if (!parse_request(&r, argc, argv)) {
+        return TOOL_USAGE;
+    }
+    return r.wants_help ? tool_help(help) : render(&r);
+}
