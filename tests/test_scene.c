@@ -820,12 +820,12 @@ static void check_random_calls(uint64_t seed, bool within) {
     bench_open(&wide, &ample);
     bench_open(&exact, &counter.counts);
     sink = watch_sink(&w, &wide.scene);
-    uint32_t n_refused = random_calls(&sink, seed, within);
+    check(random_calls(&sink, seed, within) > 0, "nothing was refused, " SEED, seed);
     check(!w.traces, "a refused entity left a trace, " SEED, seed);
     check(same_counts(&counter.counts, &wide.scene.counts), SEED, seed);
     sink = aset_scene_sink(&exact.scene);
-    check(random_calls(&sink, seed, within) == n_refused, "the counter's counts are not enough, " SEED, seed);
-    check(same_counts(&counter.counts, &exact.scene.counts), SEED, seed);
+    random_calls(&sink, seed, within);
+    check(same_counts(&counter.counts, &exact.scene.counts), "the counter's counts are not enough, " SEED, seed);
     bench_close(&wide);
     bench_close(&exact);
 }

@@ -84,6 +84,7 @@ static bool settle(const aset_slices *slices, const probe *ray, int b, aset_real
     }
     while (crossed(slices, ray, b, k + 1 - entry, t, axis)) {
         if (k == last) {
+            *voxel = k;
             return false;
         }
         k += step;
@@ -159,4 +160,22 @@ bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray) {
         }
     }
     return true;
+}
+
+uint32_t dda_land(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window) {
+    int32_t crossings = 0;
+    for (int a = 0; a < 3; a++) {
+        int32_t before = walk->voxel[a];
+        if (!ray->moves[a]) {
+            continue;
+        }
+        if (a == walk->axis) {
+            walk->voxel[a] = walk->step[a] > 0 ? window->low[a] : window->high[a];
+        } else {
+            (void)settle(slices, ray, a, walk->t, walk->axis, window, &walk->voxel[a]);
+        }
+        walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (walk->step[a] > 0));
+        crossings += (walk->voxel[a] - before) * walk->step[a];
+    }
+    return (uint32_t)crossings;
 }

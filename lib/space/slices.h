@@ -56,10 +56,8 @@ bool dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const vox
 /* Puts the walk into the voxel of the ray's origin, before any crossing. False if the origin is outside the volume. */
 bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray);
 
-/* Crosses one more slice. False: the ray has left the volume. */
-static inline bool dda_step(dda *walk, const aset_slices *slices, const probe *ray) {
-    int a = walk->next[0] <= walk->next[1] ? 0 : 1;
-    a = walk->next[a] <= walk->next[2] ? a : 2;
+/* Crosses the next slice of axis a, which is a constant where this is called: so the walk's numbers can stay in registers. */
+static inline bool dda_cross(dda *walk, const aset_slices *slices, const probe *ray, int a) {
     walk->t = walk->next[a];
     walk->axis = a;
     walk->voxel[a] += walk->step[a];
@@ -69,5 +67,20 @@ static inline bool dda_step(dda *walk, const aset_slices *slices, const probe *r
     walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (walk->step[a] > 0));
     return true;
 }
+
+/* Crosses one more slice. False: the ray has left the volume. */
+static inline bool dda_step(dda *walk, const aset_slices *slices, const probe *ray) {
+    if (walk->next[0] <= walk->next[1]) {
+        return walk->next[0] <= walk->next[2] ? dda_cross(walk, slices, ray, 0) : dda_cross(walk, slices, ray, 2);
+    }
+    return walk->next[1] <= walk->next[2] ? dda_cross(walk, slices, ray, 1) : dda_cross(walk, slices, ray, 2);
+}
+
+/*
+ * Brings the walk to where the ray is after all crossings up to the walk's own t and axis, which must lie in the window (a box of
+ * voxels that the ray enters by that crossing, or axis = 3: after all crossings not behind t). The number of crossings that
+ * the walk had not made yet.
+ */
+uint32_t dda_land(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window);
 
 #endif
