@@ -356,7 +356,7 @@ static void mset_go(const aset_space *space, const probe *ray, walk_request *wal
         }
     }
     if (!known) {
-        n_cells += count_rest(space, ray, &way, inside, walk->limit);
+        n_cells += count_rest(space, ray, &way, inside || way.t > walk->limit, walk->limit);
     }
     walk->cells += n_cells;
 }
