@@ -72,7 +72,7 @@ $(BUILD)/tests/%: tests/%.c $(wildcard tests/support/*) $(TOOL_TESTABLE) $(ARCHI
 	$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(CMOCKA_CFLAGS) -Itests -Itools -MMD -MP -o $@ $< \
 	  $(wildcard tests/support/*.c) $(TOOL_TESTABLE) $(ARCHIVES) $(CMOCKA_LIBS) $(PNG_LIBS) -lpthread -lm
 
-test: $(addprefix $(BUILD)/tests/,$(TESTS)) $(BUILD)/aset all check-layers check-link check-readme ## run the tests, in under two minutes
+test: $(addprefix $(BUILD)/tests/,$(TESTS)) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
 	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi; echo "all tests passed"
@@ -91,6 +91,9 @@ check-layers: ## who includes whom, as DESIGN.md says
 
 check-link: $(CORE_A) ## the core's undefined symbols, and that other layout switches do not link
 	@bash tests/link.sh $(BUILD) "$(CC)"
+
+check-recursion: ## no function of the core calls itself, directly or through others
+	@bash tests/recursion.sh $(BUILD)
 
 check-readme: $(ARCHIVES) ## the README's program is examples/smallest.c
 	@bash tests/readme.sh
@@ -151,6 +154,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: all examples test test-long test-sanitize test-double check-layers check-link check-readme check-valgrind werror size demo \
+.PHONY: all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 prices pictures deps install clean help
 .SECONDARY:

@@ -12,7 +12,7 @@ for scene in tetra snow mount teapot rings tree balls gears; do
         "$aset" render "$dir/$scene.nff" -m "$method" -s 256x256 -j "${JOBS:-2}" -o "$dir/$scene-$method.ppm" \
             --stats "$dir/$scene-$method.json" --quiet
     done
-    number() { sed -n "s/.*\"$2\":\([0-9]*\).*/\1/p" "$dir/$scene-$1.json"; }
+    number() { grep -o "\"$2\":[0-9]*" "$dir/$scene-$1.json" | head -n 1 | cut -d: -f2; } # the first of that name
     rays() { echo $(($(number "$1" primary) + $(number "$1" shadow) + $(number "$1" reflected) + $(number "$1" refracted))); }
     why=""
     cmp -s "$dir/$scene-mset.ppm" "$dir/$scene-brute.ppm" || why="the pictures differ"

@@ -285,6 +285,8 @@ static void test_shape__sides_and_ends_of_cones(void **state) {
     assert_true(on_cone(1, 1, false, real3(-5, 0, -1), right) == -1);
     assert_true(on_cone(1, 1, false, real3(0, 0, -3), up) == -1); /* the ends are open */
     assert_true(on_cone(1, 1, false, real3(0, 0, 9), real3(0, 0, -1)) == -1);
+    assert_true(on_cone(1, 1, false, real3(0.5, 0.25, -3), up) == -1);
+    assert_true(on_cone(1, 1, false, real3(-0.5, 0.25, 2), up) == -1);
     assert_true(on_cone(1, 0, false, real3(0, 0, -3), up) < 0 || on_cone(1, 0, false, real3(0, 0, -3), up) == 7);
     assert_true(fabs(on_cone(2, 0, false, real3(-5, 0, 2), right) - 4) < 1e-5);
     assert_true(fabs(on_cone(0, 2, false, real3(-5, 0, 1), right) - 4.5) < 1e-5);
@@ -479,20 +481,19 @@ static void add_ball(model *m, int level, bool straight) {
     }
 }
 
-/* Each face of the unit cube as a concave L and the square that fills it; corners in common. */
+/* Each face of the cube as two concave polygons with a zigzag from corner to corner between them. */
 static void add_cube(model *m) {
-    static const double l[6][2] = {{-1, -1}, {1, -1}, {1, 0.25}, {0.1, 0.25}, {0.1, 1}, {-1, 1}};
-    static const double fill[5][2] = {{0.1, 0.25}, {1, 0.25}, {1, 1}, {0.4, 1}, {0.1, 1}};
+    static const double parts[2][5][2] = {{{-1, -1}, {1, -1}, {1, 1}, {0.3, -0.6}, {-0.2, 0.5}},
+                                          {{-1, -1}, {-0.2, 0.5}, {0.3, -0.6}, {1, 1}, {-1, 1}}};
     for (int face = 0; face < 6; face++) {
-        aset_vec3 points[6];
         double side = face % 2 == 0 ? 1 : -1;
         for (int part = 0; part < 2; part++) {
-            uint32_t n = part == 0 ? 6 : 5;
-            for (uint32_t i = 0; i < n; i++) {
-                double p = part == 0 ? l[i][0] : fill[i][0], q = part == 0 ? l[i][1] : fill[i][1];
+            aset_vec3 points[5];
+            for (int i = 0; i < 5; i++) {
+                double p = parts[part][i][0], q = parts[part][i][1];
                 points[i] = face / 2 == 0 ? real3(side, p, q) : face / 2 == 1 ? real3(p, side, q) : real3(p, q, side);
             }
-            model_polygon(m, points, NULL, n);
+            model_polygon(m, points, NULL, 5);
         }
     }
 }
@@ -512,7 +513,7 @@ static void check_tight(model *m, uint64_t seed, uint32_t n_rays) {
     stage s;
     stage_open_model(&s, m, 0);
     for (uint32_t i = 0; i < n_rays; i++) {
-        aset_vec3 origin = random_in_cube(&r, 0.5);
+        aset_vec3 origin = random_in_cube(&r, 0.35);
         check(!leaks(&s, origin, random_direction(&r)), SEED ", ray %" PRIu32, r.seed, i);
     }
     stage_close(&s);
@@ -528,7 +529,7 @@ static void check_tight_at_corners(model *m, uint64_t seed) {
         for (uint32_t k = 0; k < t->n_points; k++) {
             dvec a = dvec_of(t->points[k]), b = dvec_of(t->points[(k + 1) % t->n_points]);
             for (int trial = 0; trial < 12; trial++) {
-                dvec o = trial == 0 ? dvec_make(0, 0, 0) : dvec_of(random_in_cube(&r, 0.5));
+                dvec o = trial == 0 ? dvec_make(0, 0, 0) : dvec_of(random_in_cube(&r, 0.35));
                 o = trial == 1 ? dvec_make(a.x * 0.5, a.y * 0.5, a.z * 0.5) : o;
                 dvec target = trial % 3 < 2 ? a : dvec_along(a, 0.5, dvec_sub(b, a));
                 aset_vec3 direction = dvec_real(dvec_unit(dvec_sub(target, o)));
@@ -545,7 +546,7 @@ static void test_shape__closed_triangles_do_not_leak(void **state) {
     for (int straight = 0; straight < 2; straight++) {
         model m;
         model_start(&m);
-        add_ball(&m, 1, straight);
+        add_ball(&m, 2, straight);
         check_tight(&m, seed_of(6000 + (uint64_t)straight), 50000);
         check_tight_at_corners(&m, seed_of(6010 + (uint64_t)straight));
         model_free(&m);

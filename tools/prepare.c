@@ -60,8 +60,8 @@ static void tell_need(tool_source *source, const settings *s, const aset_counts 
         return;
     }
     if (measured_space(&m, source->path, s->method, is_auto ? one : s->grid, &size, approximates(s) ? &summary : NULL)) {
-        tool_error(source->path, 0, "the picture needs %zu bytes%s, has %" PRIu64,
-                   m.scene_bytes + scratch_bytes(s) + size.total + summary, is_auto ? " at least" : "", s->memory);
+        tool_error(source->path, 0, "the picture needs %zu bytes, has %" PRIu64,
+                   m.scene_bytes + scratch_bytes(s) + size.total + summary, s->memory);
     }
     free(m.block);
 }

@@ -23,9 +23,9 @@
     X(teapot, "teapot", 6, 64, "a teapot on a checkerboard; size: cells along each edge of a patch")                    \
     X(tetra, "tetra", 6, 12, "a tetrahedron of tetrahedra (Sierpinski); size: levels")                                  \
     X(tree, "tree", 11, 16, "a forking tree of cones and spheres; size: forks above the trunk")                         \
-    X(snow, "snow", 1, 1, "snow")                                                                                       \
-    X(tetra_moon, "tetra-moon", 5, 10, "tetrahedra and a moon")                                                         \
-    X(skull, "skull", 1, 1, "a skull")
+    X(snow, "snow", 1, 1, "a winter night, 813 objects: pond, snowman, firs, crystals; one size")                         \
+    X(tetra_moon, "tetra-moon", 5, 10, "tetrahedra of ruby glass before a moon; size: levels")                          \
+    X(skull, "skull", 1, 1, "a skull and crossed bones on a dark mirror; one size")
 
 #define ASET_PROCEDURAL_DECLARE(id, name, default_size, largest_size, text)                                             \
     aset_status aset_procedural_##id(const aset_sink *sink, uint32_t size);

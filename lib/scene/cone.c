@@ -59,6 +59,9 @@ static bool quadratic_roots(aset_real a, aset_real b, aset_real c, aset_real roo
         return false;
     }
     aset_real q = b < 0 ? -b + real_sqrt(discriminant) : -b - real_sqrt(discriminant);
+    if (q == 0 && a == 0) {
+        return false; /* along the surface's rulings: a constant, never or always 0 */
+    }
     roots[0] = a != 0 ? q / a : REAL_INFINITY;
     roots[1] = q != 0 ? c / q : 0;
     if (roots[0] > roots[1]) {

@@ -44,6 +44,7 @@ static aset_status count_material(void *context, const aset_material *material) 
 
 static aset_status count_object(aset_counter *counter, uint64_t coordinates, aset_vec3 low, aset_vec3 high) {
     bool is_new;
+    counter->outline.open = false; /* a polygon in progress is abandoned, as the builder abandons it */
     if (counter->counts.objects == UINT32_MAX - 1) {
         return ASET_ERR_LIMIT;
     }

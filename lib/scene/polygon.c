@@ -116,6 +116,9 @@ static aset_real triangle_nearest(const aset_real *points, unsigned stride, cons
     if (((edge_crosses(&a, &b) + edge_crosses(&b, &c) + edge_crosses(&c, &a)) & 1) == 0) {
         return REAL_INFINITY;
     }
+    if (!(vec_largest(polygon_area(points, 3, stride)) > 0)) {
+        return REAL_INFINITY; /* on one line: what crossed are rounding errors */
+    }
     aset_real u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;
     aset_real det = u + v + w;
     if (det == 0) {

@@ -61,12 +61,18 @@ static aset_status take_material(void *context, const aset_material *material) {
     return status;
 }
 
-/* Room for one more object of so many coordinates, and the material it uses stored. */
-static aset_status prepare_object(aset_scene *scene, uint64_t coordinates) {
-    if (scene->counts.objects == scene->limits.objects ||
-        coordinates > scene->limits.coordinates - scene->counts.coordinates) {
-        return ASET_ERR_NOMEM;
+/* Is there room for one more object of so many coordinates, and a material for it? */
+static aset_status check_room(const aset_scene *scene, uint64_t coordinates) {
+    if (!scene->recent.has_pending && !scene->recent.has_current) {
+        return ASET_ERR_ARGUMENT;
     }
+    bool fits = scene->counts.objects < scene->limits.objects &&
+                coordinates <= scene->limits.coordinates - scene->counts.coordinates;
+    return fits ? ASET_OK : ASET_ERR_NOMEM;
+}
+
+/* The material that the next object uses is stored, if it is not yet. */
+static aset_status store_material(aset_scene *scene) {
     aset_recent_materials before = scene->recent;
     bool is_new;
     aset_status status = entity_use_material(&scene->recent, &is_new);
@@ -114,7 +120,7 @@ static aset_status take_polygon_begin(void *context, uint32_t n_points, bool wit
     aset_scene *scene = context;
     aset_status status = outline_begin(&scene->outline, n_points, with_normals);
     if (status == ASET_OK) {
-        status = prepare_object(scene, outline_coordinates(&scene->outline));
+        status = check_room(scene, outline_coordinates(&scene->outline));
         scene->outline.open = status == ASET_OK;
     }
     return status;
@@ -145,6 +151,9 @@ static aset_status take_polygon_end(void *context) {
     aset_scene *scene = context;
     aset_outline *outline = &scene->outline;
     aset_status status = outline_end(outline);
+    if (status == ASET_OK) {
+        status = store_material(scene);
+    }
     if (status != ASET_OK) {
         return status;
     }
@@ -157,12 +166,21 @@ static aset_status take_polygon_end(void *context) {
 
 #endif
 
+#if ASET_WITH_SPHERES || ASET_WITH_CONES
+/* For an object that comes whole; a polygon in progress, whose place it takes, is abandoned. */
+static aset_status prepare_whole(aset_scene *scene, uint64_t coordinates) {
+    scene->outline.open = false;
+    aset_status status = check_room(scene, coordinates);
+    return status == ASET_OK ? store_material(scene) : status;
+}
+#endif
+
 #if ASET_WITH_SPHERES
 static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real radius) {
     aset_scene *scene = context;
     aset_status status = entity_check_sphere(centre, radius);
     if (status == ASET_OK) {
-        status = prepare_object(scene, ASET_COORDINATES_SPHERE);
+        status = prepare_whole(scene, ASET_COORDINATES_SPHERE);
     }
     if (status != ASET_OK) {
         return status;
@@ -184,7 +202,7 @@ static aset_status take_cone(void *context, const aset_vec3 *base, aset_real bas
     aset_scene *scene = context;
     aset_status status = entity_check_cone(base, base_radius, apex, apex_radius);
     if (status == ASET_OK) {
-        status = prepare_object(scene, ASET_COORDINATES_CONE);
+        status = prepare_whole(scene, ASET_COORDINATES_CONE);
     }
     if (status != ASET_OK) {
         return status;

@@ -40,11 +40,9 @@ static void brute_go(const aset_space *space, const probe *ray, walk_request *wa
         return;
     }
     for (uint32_t i = 0; i < n_objects; i++) {
-        cell.objects[cell.n++] = i;
-        if (cell.n == WALK_BATCH || i + 1 == n_objects) {
-            walk->visit(walk, &cell);
-            cell.n = 0;
-        }
+        cell.objects[0] = i; /* one at a time: a visitor that has enough leaves the rest of a batch */
+        cell.n = 1;
+        walk->visit(walk, &cell);
     }
 }
 

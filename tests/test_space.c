@@ -1,0 +1,961 @@
+/*
+ * test_space.c - spaces against brute force on the same seeded rays, bit for bit; that no object is met twice; that every cell
+ * is marked as the rule says; structure counts; hostile scenes.
+ */
+#include "support/support.h"
+
+#include "space/cells.h"
+#include "space/slices.h"
+#include "space/walk.h"
+
+#define ROOM ((size_t)6 << 20)
+
+static aset_vec3 real3(double x, double y, double z) {
+    return dvec_real(dvec_make(x, y, z));
+}
+
+static void set_axis(aset_vec3 *v, int a, aset_real x) {
+    *(a == 0 ? &v->x : a == 1 ? &v->y : &v->z) = x;
+}
+
+static double size_of(const aset_scene *scene) {
+    dvec span = dvec_sub(dvec_of(scene->high), dvec_of(scene->low));
+    double size = fmax(span.x, fmax(span.y, span.z));
+    return size > 0 ? size : 1;
+}
+
+/* A point in the scene's box, grown by so many sizes. */
+static dvec random_in_scene(random_state *r, const aset_scene *scene, double grown) {
+    dvec low = dvec_of(scene->low), high = dvec_of(scene->high);
+    double g = grown * size_of(scene);
+    double x = random_between(r, low.x - g, high.x + g), y = random_between(r, low.y - g, high.y + g);
+    return dvec_make(x, y, random_between(r, low.z - g, high.z + g));
+}
+
+/* --- rays of all sorts --- */
+
+typedef enum ray_sort {
+    FROM_OUTSIDE,
+    FROM_INSIDE,
+    ALONG_AXIS,
+    NEARLY_ALONG_AXIS,
+    IN_SLICE,
+    FROM_SLICE,
+    THROUGH_CORNERS,
+    ALONG_BOX,
+    FROM_SURFACE,
+    FROM_FAR,
+    RAY_SORTS
+} ray_sort;
+
+static const char *const sort_names[RAY_SORTS] = {"from outside", "from inside", "along an axis", "nearly along an axis",
+                                                  "in a slice", "from a slice", "through corners", "along a box",
+                                                  "from a surface", "from far"};
+
+static aset_real random_slice(random_state *r, const aset_space *space, int a) {
+    return slices_plane(&space->slices, a, (int32_t)random_below(r, space->slices.n[a] + 1));
+}
+
+static void aim(aset_ray *ray, random_state *r, const aset_scene *scene) {
+    dvec target = random_in_scene(r, scene, 0);
+    dvec to = dvec_sub(target, dvec_of(ray->origin));
+    ray->direction = dvec_length(to) > 0 ? dvec_real(dvec_unit(to)) : real3(0, 0, 1);
+}
+
+/* Zeros of either sign. */
+static aset_real some_zero(random_state *r) {
+    return random_chance(r, 0.5) ? R(0.0) : -R(0.0);
+}
+
+static void turn_along_axis(aset_ray *ray, random_state *r) {
+    int axis = (int)random_below(r, 3);
+    for (int a = 0; a < 3; a++) {
+        set_axis(&ray->direction, a, a == axis ? (random_chance(r, 0.5) ? R(1) : R(-1)) : some_zero(r));
+    }
+}
+
+/* Components down to the smallest that there are. */
+static void turn_nearly_along_axis(aset_ray *ray, random_state *r) {
+    int axis = (int)random_below(r, 3);
+    for (int a = 0; a < 3; a++) {
+        double x = pow(10, random_between(r, -44, -3)) * (random_chance(r, 0.5) ? 1 : -1);
+        set_axis(&ray->direction, a, a == axis ? (random_chance(r, 0.5) ? R(1) : R(-1)) : (aset_real)x);
+    }
+}
+
+/* The origin on one, two or three slices; in_slice: the ray stays in one of them. */
+static void put_on_slices(aset_ray *ray, random_state *r, const aset_scene *scene, const aset_space *space, bool in_slice) {
+    int axis = (int)random_below(r, 3);
+    ray->origin = dvec_real(random_in_scene(r, scene, in_slice ? 0.3 : 0));
+    for (int a = 0; a < 3; a++) {
+        if (a == axis || random_chance(r, 0.3)) {
+            set_axis(&ray->origin, a, random_slice(r, space, a));
+        }
+    }
+    ray->direction = random_direction(r);
+    if (in_slice) {
+        if (random_chance(r, 0.3)) {
+            turn_along_axis(ray, r);
+        }
+        set_axis(&ray->direction, axis, some_zero(r));
+        if (ray->direction.x == 0 && ray->direction.y == 0 && ray->direction.z == 0) {
+            set_axis(&ray->direction, (axis + 1) % 3, 1);
+        }
+    } else if (random_chance(r, 0.3)) {
+        turn_along_axis(ray, r);
+    }
+}
+
+static void put_through_corners(aset_ray *ray, random_state *r, const aset_space *space) {
+    for (int a = 0; a < 3; a++) {
+        set_axis(&ray->origin, a, random_slice(r, space, a));
+        set_axis(&ray->direction, a, space->slices.width[a] * (random_chance(r, 0.5) ? R(1) : R(-1)));
+    }
+    if (random_chance(r, 0.5)) {
+        dvec back = dvec_along(dvec_of(ray->origin), -4.0, dvec_of(ray->direction));
+        ray->origin = dvec_real(back);
+    }
+}
+
+/* Along a face or an edge of an object's own box. */
+static void put_along_box(aset_ray *ray, random_state *r, const aset_scene *scene) {
+    aset_vec3 low, high;
+    aset_object_bounds(scene, random_below(r, scene->counts.objects), &low, &high);
+    ray->origin = dvec_real(random_in_scene(r, scene, 0.2));
+    turn_along_axis(ray, r);
+    for (int a = 0; a < 3; a++) {
+        bool lower = random_chance(r, 0.5);
+        aset_real side = a == 0 ? (lower ? low.x : high.x) : a == 1 ? (lower ? low.y : high.y) : lower ? low.z : high.z;
+        if (random_chance(r, 0.7)) {
+            set_axis(&ray->origin, a, side);
+        }
+    }
+}
+
+static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *scene) {
+    ray->origin = dvec_real(random_in_scene(r, scene, 1));
+    for (int trial = 0; trial < 10; trial++) {
+        aim(ray, r, scene);
+        uint32_t object = random_below(r, scene->counts.objects);
+        aset_real t = object_hit(scene, object, ray->origin, ray->direction);
+        if (t < REAL_INFINITY) {
+            ray->origin = dvec_real(dvec_along(dvec_of(ray->origin), (double)t, dvec_of(ray->direction)));
+            break;
+        }
+    }
+    ray->direction = random_direction(r);
+}
+
+static aset_ray random_ray(random_state *r, const aset_scene *scene, const aset_space *space, ray_sort sort) {
+    aset_ray ray;
+    ray.t_max = random_chance(r, 0.2) ? (aset_real)random_between(r, 0, 3 * size_of(scene)) : REAL_INFINITY;
+    ray.origin = dvec_real(random_in_scene(r, scene, sort == FROM_OUTSIDE ? 1.5 : sort == ALONG_AXIS ? 0.4 : 0));
+    aim(&ray, r, scene);
+    switch (sort) {
+    case FROM_INSIDE: ray.direction = random_direction(r); break;
+    case ALONG_AXIS: turn_along_axis(&ray, r); break;
+    case NEARLY_ALONG_AXIS: turn_nearly_along_axis(&ray, r); break;
+    case IN_SLICE: put_on_slices(&ray, r, scene, space, true); break;
+    case FROM_SLICE: put_on_slices(&ray, r, scene, space, false); break;
+    case THROUGH_CORNERS: put_through_corners(&ray, r, space); break;
+    case ALONG_BOX: put_along_box(&ray, r, scene); break;
+    case FROM_SURFACE: put_on_surface(&ray, r, scene); break;
+    case FROM_FAR: {
+        double distance = size_of(scene) * pow(10, random_between(r, 0.5, 7));
+        ray.origin = dvec_real(dvec_along(random_in_scene(r, scene, 0), distance, dvec_of(random_direction(r))));
+        aim(&ray, r, scene);
+        break;
+    }
+    default: break;
+    }
+    return ray;
+}
+
+/* --- one ray through both --- */
+
+typedef struct duel {
+    const stage *stage;
+    aset_tracer brute, other;
+    uint8_t *seen; /* by the walk, for each object */
+    const char *name;
+    uint64_t seed;
+    uint64_t rays, hits, brute_tests, other_tests;
+} duel;
+
+#define DUEL_TEXT "%s, " SEED ", ray %" PRIu64 " %s, grid %" PRIu32 "x%" PRIu32 "x%" PRIu32
+#define DUEL_ARGS(d, sort)                                                                                             \
+    (d)->name, (d)->seed, (d)->rays, sort_names[sort], (d)->other.space->slices.n[0], (d)->other.space->slices.n[1],   \
+        (d)->other.space->slices.n[2]
+
+static bool same_hit(const aset_hit *a, const aset_hit *b) {
+    return memcmp(&a->t, &b->t, sizeof a->t) == 0 && memcmp(&a->point, &b->point, sizeof a->point) == 0 &&
+           memcmp(&a->normal, &b->normal, sizeof a->normal) == 0 &&
+           memcmp(&a->geometric, &b->geometric, sizeof a->geometric) == 0 && a->object == b->object &&
+           a->material == b->material;
+}
+
+static void compare_queries(duel *d, const aset_ray *ray, ray_sort sort) {
+    aset_statistics brute, other;
+    aset_hit expected, hit;
+    bool expected_found, found, any, expected_any;
+    uint32_t n_objects = d->stage->scene.counts.objects;
+    memset(&brute, 0, sizeof brute);
+    memset(&other, 0, sizeof other);
+    assert_int_equal(aset_closest_hit(&expected_found, &expected, &d->brute, ray, false, &brute), ASET_OK);
+    assert_int_equal(aset_closest_hit(&found, &hit, &d->other, ray, false, &other), ASET_OK);
+    check(found == expected_found, DUEL_TEXT, DUEL_ARGS(d, sort));
+    check(!found || same_hit(&hit, &expected), DUEL_TEXT ": object %" PRIu32 " at %.9g, not %" PRIu32 " at %.9g",
+          DUEL_ARGS(d, sort), hit.object, (double)hit.t, expected.object, (double)expected.t);
+    check(brute.tests == n_objects, DUEL_TEXT, DUEL_ARGS(d, sort));
+    check(other.tests <= n_objects && other.test_hits <= other.tests, DUEL_TEXT, DUEL_ARGS(d, sort));
+    d->brute_tests += brute.tests;
+    d->other_tests += other.tests;
+    assert_int_equal(aset_any_hit(&expected_any, &d->brute, ray, false, &brute), ASET_OK);
+    assert_int_equal(aset_any_hit(&any, &d->other, ray, false, &other), ASET_OK);
+    check(any == expected_found && expected_any == expected_found, DUEL_TEXT, DUEL_ARGS(d, sort));
+    check(brute.tests == 2 * n_objects, DUEL_TEXT, DUEL_ARGS(d, sort));
+    d->hits += found;
+    if (found && d->rays % 8 == 0) { /* t_max itself is no hit any more */
+        aset_ray shorter = *ray;
+        shorter.t_max = hit.t;
+        aset_closest_hit(&expected_found, &expected, &d->brute, &shorter, false, NULL);
+        aset_closest_hit(&found, &hit, &d->other, &shorter, false, NULL);
+        check(found == expected_found && (!found || same_hit(&hit, &expected)), DUEL_TEXT, DUEL_ARGS(d, sort));
+    }
+}
+
+/* --- what a walk goes through --- */
+
+typedef struct inspection {
+    walk_request walk; /* first, so that the visitor finds the rest */
+    const duel *duel;
+    const aset_ray *ray;
+    aset_real last_t;
+    bool twice, late, backwards;
+} inspection;
+
+static aset_real inspect(walk_request *walk, const walk_cell *cell) {
+    inspection *in = (inspection *)walk;
+    if (cell->face != FACE_NONE) {
+        in->backwards = in->backwards || cell->t < in->last_t;
+        in->last_t = cell->t;
+    }
+    for (uint32_t i = 0; i < cell->n; i++) {
+        uint32_t object = cell->objects[i];
+        in->twice = in->twice || in->duel->seen[object] > 0;
+        in->duel->seen[object] = 1;
+        if (cell->face != FACE_NONE) {
+            in->late = in->late || cell->t > object_hit(&in->duel->stage->scene, object, in->ray->origin, in->ray->direction);
+        }
+    }
+    return REAL_INFINITY;
+}
+
+/*
+ * Goes all the way: no object twice, cells in order, every object that the ray hits by itself among those met, and none met in
+ * a cell that begins behind its hit (else a walk that stops at a nearer hit could lose it).
+ */
+static void inspect_walk(duel *d, const aset_ray *ray, ray_sort sort) {
+    const aset_scene *scene = &d->stage->scene;
+    inspection in;
+    memset(&in, 0, sizeof in);
+    memset(d->seen, 0, scene->counts.objects);
+    aset_ray unit = *ray;
+    unit.direction = dvec_real(dvec_unit(dvec_of(ray->direction)));
+    in.walk.visit = inspect;
+    in.walk.limit = REAL_INFINITY;
+    in.walk.wants_references = true;
+    in.duel = d;
+    in.ray = &unit;
+    in.last_t = -REAL_INFINITY;
+    probe p = probe_make(unit.origin, unit.direction);
+    d->other.space->method->go(d->other.space, &p, &in.walk);
+    check(!in.twice, DUEL_TEXT, DUEL_ARGS(d, sort));
+    check(!in.backwards, DUEL_TEXT, DUEL_ARGS(d, sort));
+    check(!in.late, DUEL_TEXT, DUEL_ARGS(d, sort));
+    for (uint32_t i = 0; i < scene->counts.objects; i++) {
+        check(d->seen[i] > 0 || !(object_hit(scene, i, unit.origin, unit.direction) < REAL_INFINITY),
+              DUEL_TEXT ": object %" PRIu32 " missed", DUEL_ARGS(d, sort), i);
+    }
+}
+
+static void run_duel(duel *d, const stage *s, const aset_space *brute, const aset_space *space, uint32_t n_rays) {
+    random_state r = random_start(d->seed);
+    d->stage = s;
+    d->brute = stage_tracer(s, brute);
+    d->other = stage_tracer(s, space);
+    d->seen = malloc(s->scene.counts.objects + 1);
+    for (uint32_t i = 0; i < n_rays; i++, d->rays++) {
+        ray_sort sort = (ray_sort)(i % RAY_SORTS);
+        aset_ray ray = random_ray(&r, &s->scene, space, sort);
+        compare_queries(d, &ray, sort);
+        if (sort != FROM_FAR && i % 3 == 0) { /* queries bring far rays near before they walk */
+            inspect_walk(d, &ray, sort);
+        }
+    }
+    free(d->seen);
+}
+
+static const uint32_t grids[][3] = {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {7, 7, 7}, {30, 30, 30}, {5, 1, 13}, {1, 40, 2},
+                                    {64, 3, 9}};
+
+/* The model in every grid. Frees it. The rays that hit. */
+static uint64_t duel_model(model *m, const char *name, uint64_t seed, uint32_t n_rays) {
+    uint64_t hits = 0;
+    for (size_t g = 0; g < COUNT_OF(grids); g++) {
+        stage s;
+        aset_space brute, space;
+        duel d;
+        memset(&d, 0, sizeof d);
+        d.name = name;
+        d.seed = seed + 1000 * g;
+        stage_open_model(&s, m, ROOM);
+        stage_space(&s, &brute, &aset_brute, 1, 1, 1);
+        stage_space(&s, &space, &aset_mset, grids[g][0], grids[g][1], grids[g][2]);
+        run_duel(&d, &s, &brute, &space, n_rays);
+        hits += d.hits;
+        stage_close(&s);
+    }
+    model_free(m);
+    return hits;
+}
+
+/* Points times scale, then moved. */
+static void model_move(model *m, double scale, dvec offset) {
+    for (uint32_t i = 0; i < m->n_things; i++) {
+        thing *t = m->things + i;
+        for (int k = 0; k < THING_POINTS_MAX; k++) {
+            t->points[k] = dvec_real(dvec_along(offset, scale, dvec_of(t->points[k])));
+        }
+        t->radii[0] = (aset_real)(scale * (double)t->radii[0]);
+        t->radii[1] = (aset_real)(scale * (double)t->radii[1]);
+    }
+}
+
+/* --- equal to brute force --- */
+
+static void test_space__mset_equals_brute_on_small_objects(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 3; i++) {
+        random_state r = random_start(seed_of(i));
+        model m;
+        model_random(&m, &r, 80, 5, 0.2, 1.5);
+        assert_true(duel_model(&m, "small objects", r.seed, 1200) > 600);
+    }
+}
+
+/* More large ones than a space may list apart. */
+static void test_space__mset_equals_brute_on_large_objects(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 3; i++) {
+        random_state r = random_start(seed_of(10 + i));
+        model m;
+        model_random(&m, &r, 40, 5, 3, 12);
+        for (uint32_t k = 0; k < 30; k++) {
+            model_random_thing(&m, &r, 5, 0.5);
+        }
+        assert_true(duel_model(&m, "large objects", r.seed, 900) > 1000);
+    }
+}
+
+/* A few large ones among many: the list's purpose. */
+static void test_space__mset_equals_brute_on_mixed_sizes(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 4; i++) {
+        random_state r = random_start(seed_of(20 + i));
+        model m;
+        model_random(&m, &r, 60, 5, 0.1, 0.8);
+        for (uint32_t k = 0; k < 3 + 5 * i; k++) {
+            model_random_thing(&m, &r, 4, random_between(&r, 4, 10));
+        }
+        assert_true(duel_model(&m, "mixed sizes", r.seed, 700) > 800);
+    }
+}
+
+static void test_space__mset_equals_brute_away_from_the_origin(void **state) {
+    (void)state;
+    static const struct {
+        double scale;
+        dvec offset;
+    } moves[] = {{1, {1000, -2000, 500}}, {1e-3, {10, 0, -7}}, {1e-6, {0, 0, 0}}, {1e5, {1e6, 0, 1e5}}, {1e12, {0, 1e13, 0}}};
+    for (size_t i = 0; i < COUNT_OF(moves); i++) {
+        random_state r = random_start(seed_of(30 + i));
+        model m;
+        model_random(&m, &r, 50, 5, 0.3, 4);
+        model_move(&m, moves[i].scale, moves[i].offset);
+        assert_true(duel_model(&m, "moved", r.seed, 400) > 200);
+    }
+}
+
+static void test_space__mset_equals_brute_on_procedural_scenes(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        uint32_t size;
+    } scenes[] = {{"balls", 2}, {"gears", 1}, {"mount", 3}, {"rings", 2}, {"teapot", 2}, {"tetra", 3}, {"tree", 5}};
+    for (size_t i = 0; i < COUNT_OF(scenes); i++) {
+        for (size_t g = 2; g < COUNT_OF(grids); g += 2) {
+            stage s;
+            aset_space brute, space;
+            duel d;
+            memset(&d, 0, sizeof d);
+            d.name = scenes[i].name;
+            d.seed = seed_of(40 + 10 * i + g);
+            if (stage_open_procedural(&s, scenes[i].name, scenes[i].size, ROOM)) {
+                stage_space(&s, &brute, &aset_brute, 1, 1, 1);
+                stage_space(&s, &space, &aset_mset, grids[g][0], grids[g][1], grids[g][2]);
+                run_duel(&d, &s, &brute, &space, 600);
+                assert_true(d.hits > 50);
+                stage_close(&s);
+            }
+        }
+    }
+}
+
+/* --- hostile scenes --- */
+
+#if ASET_WITH_POLYGONS
+/* Everything in one plane, which with an odd grid also is a slice's. */
+static void test_space__objects_in_one_plane(void **state) {
+    (void)state;
+    for (int axis = 0; axis < 3; axis++) {
+        random_state r = random_start(seed_of(200 + (uint64_t)axis));
+        model m;
+        model_random(&m, &r, 0, 1, 1, 1);
+        for (int i = 0; i < 50; i++) {
+            aset_vec3 corner = random_in_cube(&r, 4), u = {0, 0, 0}, v = {0, 0, 0};
+            set_axis(&corner, axis, axis == 1 ? R(2.5) : 0);
+            set_axis(&u, (axis + 1) % 3, (aset_real)random_between(&r, 0.2, 3));
+            set_axis(&v, (axis + 2) % 3, (aset_real)random_between(&r, 0.2, 3));
+            model_rectangle(&m, corner, u, v);
+        }
+        assert_true(duel_model(&m, "one plane", r.seed, 500) > 300);
+    }
+}
+
+/* A scene of no size: it must build, and nothing is ever hit. */
+static void test_space__objects_in_one_point(void **state) {
+    (void)state;
+    static const aset_vec3 places[2] = {{0, 0, 0}, {1, 2, -3}};
+    for (int i = 0; i < 2; i++) {
+        const aset_vec3 points[3] = {places[i], places[i], places[i]};
+        model m;
+        model_start(&m);
+        for (int k = 0; k < 20; k++) {
+            model_polygon(&m, points, NULL, 3);
+        }
+        assert_true(duel_model(&m, "one point", seed_of(210), 200) == 0);
+    }
+}
+
+/* Rectangles that lie exactly in slices, and share them with their neighbours. */
+static void test_space__objects_in_slices(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(220));
+    model m;
+    model_start(&m);
+    for (int axis = 0; axis < 3; axis++) {
+        for (int k = 0; k <= 4; k++) {
+            aset_vec3 corner = {0, 0, 0}, u = {0, 0, 0}, v = {0, 0, 0};
+            set_axis(&corner, axis, (aset_real)k);
+            set_axis(&corner, (axis + 1) % 3, (aset_real)random_below(&r, 3));
+            set_axis(&corner, (axis + 2) % 3, (aset_real)random_below(&r, 3));
+            set_axis(&u, (axis + 1) % 3, (aset_real)(1 + random_below(&r, 2)));
+            set_axis(&v, (axis + 2) % 3, (aset_real)(1 + random_below(&r, 2)));
+            model_rectangle(&m, corner, u, v);
+        }
+    }
+    stage s;
+    aset_space brute, space;
+    duel d;
+    stage_open_model(&s, &m, ROOM);
+    stage_space(&s, &brute, &aset_brute, 1, 1, 1);
+    stage_space(&s, &space, &aset_mset, 4, 4, 4);
+    memset(&d, 0, sizeof d);
+    d.name = "in slices";
+    d.seed = r.seed;
+    run_duel(&d, &s, &brute, &space, 8000);
+    assert_true(d.hits > 2000);
+    /* whole numbers too: straight onto corners and edges */
+    aset_tracer a = stage_tracer(&s, &brute), b = stage_tracer(&s, &space);
+    for (int i = 0; i < 8000; i++) {
+        aset_ray ray = {{0, 0, 0}, {0, 0, 0}, REAL_INFINITY};
+        for (int axis = 0; axis < 3; axis++) {
+            set_axis(&ray.origin, axis, (aset_real)random_below(&r, 9) - 2);
+            set_axis(&ray.direction, axis, (aset_real)random_below(&r, 5) - 2);
+        }
+        ray.direction.x = ray.direction.x == 0 && ray.direction.y == 0 && ray.direction.z == 0 ? 1 : ray.direction.x;
+        aset_hit expected, hit;
+        bool expected_found, found;
+        aset_closest_hit(&expected_found, &expected, &a, &ray, false, NULL);
+        aset_closest_hit(&found, &hit, &b, &ray, false, NULL);
+        check(found == expected_found && (!found || same_hit(&hit, &expected)), SEED ", ray %d", r.seed, i);
+    }
+    stage_close(&s);
+    model_free(&m);
+}
+#endif
+
+#if ASET_WITH_SPHERES
+/* At equal t the object added first wins, in every grid. */
+static void test_space__thousand_coincident_spheres(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(230));
+    model m;
+    stage s;
+    model_start(&m);
+    for (int i = 0; i < 1000; i++) {
+        model_sphere(&m, real3(1, 2, 3), 2);
+    }
+    stage_open_model(&s, &m, (size_t)64 << 20);
+    for (size_t g = 0; g < 4; g++) {
+        aset_space space;
+        aset_mark mark = aset_arena_mark(&s.arena);
+        stage_space(&s, &space, &aset_mset, grids[g][0], grids[g][1], grids[g][2]);
+        aset_tracer tracer = stage_tracer(&s, &space);
+        for (int i = 0; i < 200; i++) {
+            aset_ray ray = random_ray(&r, &s.scene, &space, (ray_sort)(i % ALONG_BOX));
+            aset_real t = object_hit(&s.scene, 0, ray.origin, dvec_real(dvec_unit(dvec_of(ray.direction))));
+            aset_hit hit;
+            bool found;
+            aset_statistics statistics;
+            memset(&statistics, 0, sizeof statistics);
+            ray.t_max = REAL_INFINITY;
+            assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, false, &statistics), ASET_OK);
+            check(found == (t < REAL_INFINITY), SEED ", ray %d", r.seed, i);
+            check(!found || hit.object == 0, SEED ", ray %d: object %" PRIu32, r.seed, i, hit.object);
+            check(statistics.tests <= 1000, SEED ", ray %d", r.seed, i);
+        }
+        aset_arena_release(&s.arena, &mark);
+    }
+    stage_close(&s);
+    model_free(&m);
+}
+
+static void test_space__one_object_a_million_times_larger(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(240));
+    model m;
+    model_random(&m, &r, 40, 5, 0.5, 2);
+    model_sphere(&m, real3(0, 0, -1e6), 1e6);
+    stage s;
+    stage_open_model(&s, &m, ROOM);
+    for (size_t g = 0; g < COUNT_OF(grids); g++) {
+        aset_space brute, space;
+        aset_mark mark = aset_arena_mark(&s.arena);
+        stage_space(&s, &brute, &aset_brute, 1, 1, 1);
+        stage_space(&s, &space, &aset_mset, grids[g][0], grids[g][1], grids[g][2]);
+        aset_tracer a = stage_tracer(&s, &brute), b = stage_tracer(&s, &space);
+        uint32_t hits = 0;
+        for (int i = 0; i < 500; i++) {
+            aset_ray ray = {random_in_cube(&r, 10), random_direction(&r), REAL_INFINITY};
+            aset_hit expected, hit;
+            bool expected_found, found;
+            ray.origin.z += 10;
+            aset_closest_hit(&expected_found, &expected, &a, &ray, false, NULL);
+            aset_closest_hit(&found, &hit, &b, &ray, false, NULL);
+            check(found == expected_found && (!found || same_hit(&hit, &expected)), SEED ", ray %d", r.seed, i);
+            hits += found;
+        }
+        assert_true(hits > 150);
+        aset_arena_release(&s.arena, &mark);
+    }
+    stage_close(&s);
+    assert_true(duel_model(&m, "a million times larger", r.seed, 300) > 100);
+}
+#endif
+
+static aset_status emit_nothing(const aset_sink *sink, const void *context) {
+    (void)sink, (void)context;
+    return ASET_OK;
+}
+
+static void test_space__scene_without_objects(void **state) {
+    (void)state;
+    const aset_method *const methods[2] = {&aset_brute, &aset_mset};
+    for (int i = 0; i < 2; i++) {
+        random_state r = random_start(seed_of(250));
+        stage s;
+        aset_space space;
+        stage_open(&s, emit_nothing, NULL, 4096);
+        stage_space(&s, &space, methods[i], 3, 3, 3);
+        assert_int_equal(space.structure.nonempty, 0);
+        assert_int_equal(space.structure.references, 0);
+        aset_tracer tracer = stage_tracer(&s, &space);
+        for (int k = 0; k < 100; k++) {
+            aset_ray ray = {random_in_cube(&r, 2), random_direction(&r), REAL_INFINITY};
+            aset_hit hit;
+            bool found = true;
+            assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, false, NULL), ASET_OK);
+            assert_false(found);
+            found = true;
+            assert_int_equal(aset_any_hit(&found, &tracer, &ray, false, NULL), ASET_OK);
+            assert_false(found);
+        }
+        stage_close(&s);
+    }
+}
+
+/* Rays from where float ends: no crash, and both agree that it is a miss or what is hit. */
+static void test_space__rays_from_the_end_of_the_range(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(260));
+    model m;
+    stage s;
+    aset_space brute, space;
+    model_random(&m, &r, 30, 5, 0.5, 2);
+    stage_open_model(&s, &m, ROOM);
+    stage_space(&s, &brute, &aset_brute, 1, 1, 1);
+    stage_space(&s, &space, &aset_mset, 6, 7, 8);
+    aset_tracer a = stage_tracer(&s, &brute), b = stage_tracer(&s, &space);
+    for (int i = 0; i < 3000; i++) {
+        dvec way = dvec_of(random_direction(&r));
+        double distance = pow(10, random_between(&r, 8, 37));
+        aset_ray ray = {dvec_real(dvec_along(dvec_make(0, 0, 0), distance, way)), dvec_real(way), REAL_INFINITY};
+        ray.direction = i % 2 == 0 ? dvec_real(dvec_along(dvec_make(0, 0, 0), -1, way)) : ray.direction;
+        aset_hit expected, hit;
+        bool expected_found, found;
+        assert_int_equal(aset_closest_hit(&expected_found, &expected, &a, &ray, false, NULL), ASET_OK);
+        assert_int_equal(aset_closest_hit(&found, &hit, &b, &ray, false, NULL), ASET_OK);
+        check(found == expected_found && (!found || same_hit(&hit, &expected)), SEED ", ray %d", r.seed, i);
+        check(i % 2 == 0 || !found, SEED ", ray %d goes away", r.seed, i);
+    }
+    stage_close(&s);
+    model_free(&m);
+}
+
+/* --- work --- */
+
+static void test_space__mset_tests_far_fewer_objects(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(270));
+    model m;
+    stage s;
+    aset_space brute, space;
+    duel d;
+    memset(&d, 0, sizeof d);
+    model_random(&m, &r, 300, 5, 0.1, 0.4);
+    stage_open_model(&s, &m, ROOM);
+    stage_space(&s, &brute, &aset_brute, 1, 1, 1);
+    stage_space(&s, &space, &aset_mset, 20, 20, 20);
+    d.name = "many small";
+    d.seed = r.seed;
+    run_duel(&d, &s, &brute, &space, 2000);
+    assert_int_equal(d.brute_tests, 2000 * 300);
+    assert_true(d.other_tests * 10 < d.brute_tests);
+    stage_close(&s);
+    model_free(&m);
+}
+
+/* tests = rays x objects; test_hits = how many of them hit before t_max, whether nearest or not. */
+static void test_space__brute_counts_every_test_and_hit(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(280));
+    model m;
+    stage s;
+    aset_space brute;
+    aset_statistics statistics;
+    uint64_t hits = 0;
+    memset(&statistics, 0, sizeof statistics);
+    model_random(&m, &r, 60, 3, 0.5, 4);
+    stage_open_model(&s, &m, 0);
+    stage_space(&s, &brute, &aset_brute, 1, 1, 1);
+    aset_tracer tracer = stage_tracer(&s, &brute);
+    for (uint32_t i = 0; i < 500; i++) {
+        aset_ray ray = random_ray(&r, &s.scene, &brute, FROM_OUTSIDE);
+        aset_hit hit;
+        bool found;
+        for (uint32_t k = 0; k < 60; k++) {
+            hits += object_hit(&s.scene, k, ray.origin, dvec_real(dvec_of(ray.direction))) < ray.t_max;
+        }
+        assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, false, &statistics), ASET_OK);
+        check(statistics.tests == 60 * (i + 1), SEED ", ray %" PRIu32, r.seed, i);
+        check(statistics.test_hits == hits, SEED ", ray %" PRIu32 ": %" PRIu64 " hits, not %" PRIu64, r.seed, i,
+              statistics.test_hits, hits);
+        check(statistics.cells_visited == i + 1 && statistics.nonempty_visited == i + 1, SEED, r.seed);
+    }
+    stage_close(&s);
+    model_free(&m);
+}
+
+/* --- marks --- */
+
+typedef struct listing {
+    uint8_t *refers; /* cell * objects + object */
+    uint32_t n_objects, last_cell, last_object;
+    bool disorder, twice;
+} listing;
+
+static void list_cell(void *context, uint32_t cell, const uint32_t *objects, uint32_t n) {
+    listing *l = context;
+    for (uint32_t i = 0; i < n; i++) {
+        bool first = cell != l->last_cell;
+        l->disorder = l->disorder || (l->last_cell != UINT32_MAX && cell < l->last_cell) ||
+                      (!first && objects[i] <= l->last_object);
+        l->last_cell = cell;
+        l->last_object = objects[i];
+        uint8_t *refers = l->refers + (size_t)cell * l->n_objects + objects[i];
+        l->twice = l->twice || *refers != 0;
+        *refers = 1;
+    }
+}
+
+/* Every cell, marked or not, against the rule; every reference against the rule. */
+static void check_marks(const stage *s, const aset_space *space, uint64_t seed) {
+    const uint32_t *n = space->slices.n;
+    uint32_t n_objects = s->scene.counts.objects, n_cells = 0;
+    uint64_t n_references = 0;
+    listing l = {calloc((size_t)space->cells.n_cells * n_objects + 1, 1), n_objects, UINT32_MAX, 0, false, false};
+    uint8_t *used = calloc(space->cells.n_cells + 1, 1);
+    int32_t (*low)[3] = malloc(n_objects * sizeof *low), (*high)[3] = malloc(n_objects * sizeof *high);
+    space->method->each_cell(space, list_cell, &l);
+    check(!l.disorder && !l.twice, SEED, seed);
+    for (uint32_t i = 0; i < n_objects; i++) {
+        expected_box(space, i, low[i], high[i]);
+    }
+    int32_t v[3];
+    for (v[2] = 0; v[2] < (int32_t)n[2]; v[2]++) {
+        for (v[1] = 0; v[1] < (int32_t)n[1]; v[1]++) {
+            for (v[0] = 0; v[0] < (int32_t)n[0]; v[0]++) {
+                for (uint32_t face = 0; face < 6; face++) {
+                    uint32_t cell = cell_number(space, v, face), n_here = 0;
+                    for (uint32_t i = 0; i < n_objects; i++) {
+                        bool marked = expected_marked(low[i], high[i], v, face);
+                        n_here += marked;
+                        check(!marked || cell != UINT32_MAX, SEED ", object %" PRIu32 " missing", seed, i);
+                        check(cell == UINT32_MAX || (l.refers[(size_t)cell * n_objects + i] != 0) == marked,
+                              SEED ", voxel %d %d %d, face %" PRIu32 ", object %" PRIu32, seed, (int)v[0], (int)v[1],
+                              (int)v[2], face, i);
+                    }
+                    check((n_here > 0) == (cell != UINT32_MAX), SEED, seed);
+                    check(n_here == 0 || (cell < space->cells.n_cells && used[cell] == 0), SEED, seed);
+                    used[n_here > 0 ? cell : space->cells.n_cells] = 1;
+                    n_cells += n_here > 0;
+                    n_references += n_here;
+                }
+            }
+        }
+    }
+    check(n_cells == space->structure.nonempty && n_cells == space->cells.n_cells, SEED, seed);
+    check(n_references == space->structure.references, SEED, seed);
+    check(space->structure.leaves == 2 * ((uint64_t)(n[0] + 1) * n[1] * n[2] + (uint64_t)n[0] * (n[1] + 1) * n[2] +
+                                          (uint64_t)n[0] * n[1] * (n[2] + 1)), SEED, seed);
+    check(space->structure.interior == 0, SEED, seed);
+    free(l.refers);
+    free(used);
+    free(low);
+    free(high);
+}
+
+static void test_space__objects_are_marked_on_their_six_layers(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 6; i++) {
+        random_state r = random_start(seed_of(300 + i));
+        model m;
+        stage s;
+        model_random(&m, &r, 30, 5, 0.1, 6);
+        stage_open_model(&s, &m, ROOM);
+        for (size_t g = 0; g < COUNT_OF(grids); g++) {
+            if (grids[g][0] * grids[g][1] * grids[g][2] > 10000 && i > 0) {
+                continue;
+            }
+            aset_space space;
+            aset_mark mark = aset_arena_mark(&s.arena);
+            stage_space(&s, &space, &aset_mset, grids[g][0], grids[g][1], grids[g][2]);
+            check_marks(&s, &space, r.seed);
+            aset_arena_release(&s.arena, &mark);
+        }
+        stage_close(&s);
+        model_free(&m);
+    }
+}
+
+/* The slices span the scene's box, and a little more: no object's box reaches beyond the outermost. */
+static void test_space__slices_span_the_scene(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(320));
+    for (size_t g = 0; g < COUNT_OF(grids); g++) {
+        model m;
+        stage s;
+        aset_space space;
+        model_random(&m, &r, 10, 50, 0.5, 4);
+        stage_open_model(&s, &m, ROOM);
+        stage_space(&s, &space, &aset_mset, grids[g][0], grids[g][1], grids[g][2]);
+        for (int a = 0; a < 3; a++) {
+            const aset_vec3 *low = &s.scene.low, *high = &s.scene.high;
+            double l = (double)(a == 0 ? low->x : a == 1 ? low->y : low->z);
+            double h = (double)(a == 0 ? high->x : a == 1 ? high->y : high->z);
+            double first = (double)slices_plane(&space.slices, a, 0);
+            double last = (double)slices_plane(&space.slices, a, (int32_t)grids[g][a]);
+            assert_int_equal(space.slices.n[a], grids[g][a]);
+            assert_true(first < l && last > h);
+            assert_true(first > l - 1e-3 * size_of(&s.scene) && last < h + 1e-3 * size_of(&s.scene));
+        }
+        stage_close(&s);
+        model_free(&m);
+    }
+}
+
+static void test_space__brute_is_one_cell(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(330));
+    model m;
+    stage s;
+    aset_space space;
+    model_random(&m, &r, 30, 5, 0.1, 6);
+    stage_open_model(&s, &m, 0);
+    stage_space(&s, &space, &aset_brute, 9, 9, 9);
+    assert_int_equal(space.structure.leaves, 1);
+    assert_int_equal(space.structure.nonempty, 1);
+    assert_int_equal(space.structure.references, 30);
+    assert_int_equal(space.structure.interior, 0);
+    assert_string_equal(aset_method_name(&aset_brute), "brute");
+    assert_string_equal(aset_method_name(&aset_mset), "mset");
+    stage_close(&s);
+    model_free(&m);
+}
+
+/* --- options --- */
+
+static void test_space__refuses_bad_arguments(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(340));
+    model m;
+    stage s;
+    aset_space space;
+    aset_space_size size;
+    aset_space_options options;
+    model_random(&m, &r, 10, 5, 0.1, 1);
+    stage_open_model(&s, &m, ROOM);
+    size_t used = s.arena.used;
+    static const uint32_t bad[][3] = {{0, 1, 1}, {1, 0, 1}, {1, 1, 0}, {ASET_DIVISIONS_MAX + 1, 1, 1},
+                                      {1, UINT32_MAX, 1}, {4, 4, ASET_DIVISIONS_MAX + 1}};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        memset(&options, 0, sizeof options);
+        memcpy(options.divisions, bad[i], sizeof bad[i]);
+        assert_int_equal(aset_space_build(&space, &s.scene, &aset_mset, &options, &s.arena), ASET_ERR_ARGUMENT);
+        assert_int_equal(aset_space_measure(&size, &s.scene, &aset_mset, &options, &s.arena), ASET_ERR_ARGUMENT);
+    }
+    assert_int_equal(aset_space_build(NULL, &s.scene, &aset_mset, NULL, &s.arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_space_build(&space, NULL, &aset_mset, NULL, &s.arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_space_build(&space, &s.scene, NULL, NULL, &s.arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_space_build(&space, &s.scene, &aset_mset, NULL, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_space_measure(NULL, &s.scene, &aset_mset, NULL, &s.arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_space_measure(&size, NULL, &aset_mset, NULL, &s.arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_space_measure(&size, &s.scene, NULL, NULL, &s.arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(s.arena.used, used);
+    stage_space(&s, &space, &aset_mset, ASET_DIVISIONS_MAX, 1, 2); /* the largest allowed */
+    stage_close(&s);
+    model_free(&m);
+}
+
+#if ASET_WITH_SPHERES
+/* 6 x 2048^2 references for each: 171 are more than 32 bits can number. */
+static void test_space__too_many_references(void **state) {
+    (void)state;
+    model m;
+    stage s;
+    aset_space space;
+    aset_space_size size;
+    aset_space_options options;
+    memset(&options, 0, sizeof options);
+    options.divisions[0] = options.divisions[1] = options.divisions[2] = ASET_DIVISIONS_MAX;
+    model_start(&m);
+    for (int i = 0; i < 171; i++) {
+        model_sphere(&m, real3(0, 0, 0), 1);
+    }
+    stage_open_model(&s, &m, 1 << 16);
+    size_t used = s.arena.used;
+    assert_int_equal(aset_space_measure(&size, &s.scene, &aset_mset, &options, NULL), ASET_ERR_LIMIT);
+    assert_int_equal(aset_space_build(&space, &s.scene, &aset_mset, &options, &s.arena), ASET_ERR_LIMIT);
+    assert_int_equal(s.arena.used, used);
+    stage_close(&s);
+    model_free(&m);
+}
+
+static void auto_divisions(uint32_t n_objects, dvec spread, size_t budget, uint32_t divisions[3]) {
+    random_state r = random_start(seed_of(350));
+    model m;
+    stage s;
+    model_start(&m);
+    for (uint32_t i = 0; i < n_objects; i++) {
+        dvec p = dvec_of(random_in_cube(&r, 1));
+        dvec at = i < 2 ? dvec_make(i * 2.0 - 1, i * 2.0 - 1, i * 2.0 - 1) : p;
+        model_sphere(&m, real3(at.x * spread.x, at.y * spread.y, at.z * spread.z), 1e-6);
+    }
+    stage_open_model(&s, &m, 0);
+    aset_auto_divisions(&s.scene, budget, divisions);
+    stage_close(&s);
+    model_free(&m);
+}
+
+static void test_space__automatic_divisions(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t objects, divisions;
+    } cases[] = {{1, 4}, {8, 8}, {27, 12}, {1000, 40}, {8000, 80}, {32768, 128}, {50000, 128}};
+    const dvec cube = {1, 1, 1}, flat = {1, 1, 0.0004}, almost = {1, 1, 0.002}, line = {0.0001, 1, 0};
+    uint32_t n[3];
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        auto_divisions(cases[i].objects, cube, 0, n);
+        check(n[0] == cases[i].divisions && n[1] == n[0] && n[2] == n[0], "%" PRIu32 " objects: %" PRIu32,
+              cases[i].objects, n[0]);
+    }
+    auto_divisions(1000, flat, 0, n);
+    assert_true(n[0] == 40 && n[1] == 40 && n[2] == 1);
+    auto_divisions(1000, almost, 0, n);
+    assert_true(n[0] == 40 && n[1] == 40 && n[2] == 40);
+    auto_divisions(1000, line, 0, n);
+    assert_true(n[0] == 1 && n[1] == 40 && n[2] == 1);
+}
+
+/* The map of blocks stays below half of the budget, and is not smaller than need be. */
+static void test_space__automatic_divisions_within_a_budget(void **state) {
+    (void)state;
+    const dvec cube = {1, 1, 1};
+    uint32_t n[3], last = 0;
+    for (size_t budget = 64; budget < 400000; budget += budget / 3) {
+        auto_divisions(20000, cube, budget, n);
+        uint64_t map = 12 * ASET_BLOCK_WORDS(n[0], n[1], n[2], 6u);
+        check(n[0] == 1 || map <= budget / 2, "budget %zu: %" PRIu32 " divisions, %" PRIu64 " bytes", budget, n[0], map);
+        check(n[0] >= last, "budget %zu: %" PRIu32 " divisions, fewer than before", budget, n[0]);
+        check(n[0] >= 100 || map * 8 >= budget || budget < 400, "budget %zu: %" PRIu32 " divisions only", budget, n[0]);
+        last = n[0];
+    }
+    auto_divisions(20000, cube, 400000, n);
+    assert_int_equal(n[0], 109);
+}
+#endif
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_space__mset_equals_brute_on_small_objects),
+        cmocka_unit_test(test_space__mset_equals_brute_on_large_objects),
+        cmocka_unit_test(test_space__mset_equals_brute_on_mixed_sizes),
+        cmocka_unit_test(test_space__mset_equals_brute_away_from_the_origin),
+        cmocka_unit_test(test_space__mset_equals_brute_on_procedural_scenes),
+#if ASET_WITH_POLYGONS
+        cmocka_unit_test(test_space__objects_in_one_plane),
+        cmocka_unit_test(test_space__objects_in_one_point),
+        cmocka_unit_test(test_space__objects_in_slices),
+#endif
+#if ASET_WITH_SPHERES
+        cmocka_unit_test(test_space__thousand_coincident_spheres),
+        cmocka_unit_test(test_space__one_object_a_million_times_larger),
+#endif
+        cmocka_unit_test(test_space__scene_without_objects),
+        cmocka_unit_test(test_space__rays_from_the_end_of_the_range),
+        cmocka_unit_test(test_space__mset_tests_far_fewer_objects),
+        cmocka_unit_test(test_space__brute_counts_every_test_and_hit),
+        cmocka_unit_test(test_space__objects_are_marked_on_their_six_layers),
+        cmocka_unit_test(test_space__slices_span_the_scene),
+        cmocka_unit_test(test_space__brute_is_one_cell),
+        cmocka_unit_test(test_space__refuses_bad_arguments),
+#if ASET_WITH_SPHERES
+        cmocka_unit_test(test_space__too_many_references),
+        cmocka_unit_test(test_space__automatic_divisions),
+        cmocka_unit_test(test_space__automatic_divisions_within_a_budget),
+#endif
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,921 @@
+#!/bin/bash
+# tool.sh - end-to-end tests of the program aset, run from the project's top: bash tests/tool.sh build/aset [PATTERN]
+#
+# One line for each case, `ok NAME` or `not ok NAME: why`, then `N passed, N failed`; exit status 1 if any failed. PATTERN, a
+# shell pattern, picks cases by name. Each case is a function of this file that runs in a subshell and in an empty folder of its
+# own, so that a check of the folder sees every file that the tool leaves. All folders lie in one that is removed at the end.
+set -u
+export LC_ALL=C
+unset POSIXLY_CORRECT
+
+if [ $# -lt 1 ] || [ ! -x "$1" ]; then
+    echo "usage: bash tests/tool.sh build/aset [PATTERN]" >&2
+    exit 1
+fi
+aset=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
+pattern=${2:-*}
+top=$(mktemp -d "${TMPDIR:-/tmp}/aset-tool.XXXXXX") || exit 1
+trap 'rm -rf "$top"' EXIT
+trap 'exit 1' HUP INT TERM
+# the files of the checks themselves, outside the folders of the cases
+out=$top/out err=$top/err why=$top/why noise=$top/noise scenes=$top/scenes
+n_passed=0 n_failed=0
+# a tool that runs on for ever is ended, and its case fails
+ulimit -S -t 60
+
+# ---- checks ----
+
+fail() {
+    printf '%s\n' "$*" >"$why"
+    exit 1
+}
+
+# Runs the tool with these words; leaves status, $out and $err.
+tool() {
+    status=0
+    "$aset" "$@" >"$out" 2>"$err" </dev/null || status=$?
+}
+
+# It does its work and has nothing to say on standard error, which is no terminal here.
+works() {
+    tool "$@"
+    [ $status -eq 0 ] || fail "aset $*: status $status: $(head -n 1 "$err")"
+    [ ! -s "$err" ] || fail "aset $*: done, but it says: $(head -n 1 "$err")"
+}
+
+# The run before ended with this status and one line on standard error that begins so.
+refused() {
+    local expected=$1 start=$2 line
+    line=$(head -n 1 "$err")
+    [ $status -eq "$expected" ] || fail "status $status, expected $expected; said: $line"
+    [ "$(wc -l <"$err")" -eq 1 ] || fail "$(wc -l <"$err") lines on standard error, expected 1; the first: $line"
+    case $line in
+    "$start"?*) ;;
+    *) fail "the line does not begin with '$start': $line" ;;
+    esac
+}
+
+# Wrong words: status 2, one line, nothing else.
+wrong_words() {
+    tool "$@"
+    (refused 2 "aset: ") || fail "aset $*: $(cat "$why")"
+    [ ! -s "$out" ] || fail "aset $*: standard output is not empty"
+    [ -z "$(ls -A)" ] || fail "aset $*: left $(ls -A)"
+}
+
+same() {
+    cmp -s "$1" "$2" || fail "$3"
+}
+
+# Two PPM of one width (in pixels), row by row.
+same_rows() {
+    local at
+    [ -s "$1" ] && [ -s "$2" ] || fail "$4: a picture is empty"
+    at=$(cmp -l "$1" "$2" 2>/dev/null | awk 'NR == 1 { print $1 }')
+    [ -z "$at" ] || fail "$4: differ from about row $(((at - 16) / (3 * $3))) on"
+    same "$1" "$2" "$4: one is longer"
+}
+
+# The value of a member of the compact JSON in a file; a member of a member as OBJECT KEY.
+json() {
+    local text
+    text=$(tr -d ' \n' <"$1")
+    if [ $# -eq 3 ]; then
+        text=$(printf '%s' "$text" | sed -n "s/.*\"$2\":{\\([^}]*\\)}.*/{\\1}/p")
+        shift
+    fi
+    printf '%s' "$text" | sed -n "s/.*[{,]\"$2\":\\(\\[[^]]*\\]\\|{[^}]*}\\|\"[^\"]*\"\\|[^,}]*\\).*/\\1/p"
+}
+
+# Valid JSON: strings, numbers, lists and objects are replaced by 0 from the inside out until 0 is left.
+json_valid() {
+    local rest
+    rest=$(tr -d ' \n' <"$1" | sed -E -e 's/"[^"\\]*":/@/g' -e 's/"[^"\\]*"|true|false|null/0/g' \
+        -e 's/-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?/0/g' \
+        -e ':again' -e 's/\[(0(,0)*)?\]|\{(@0(,@0)*)?\}/0/g' -e 'tagain')
+    [ "$rest" = 0 ] || fail "$1 is no valid JSON: $(head -c 200 "$1")"
+    if python3 -c '' 2>/dev/null; then
+        python3 -m json.tool <"$1" >/dev/null 2>&1 || fail "python's json.tool refuses $1"
+    fi
+}
+
+# The bytes that a run with too little memory asks for.
+need_of() {
+    tool render "$@"
+    (refused 1 "aset: $1: ") || fail "$*: $(cat "$why")"
+    need=$(sed -n 's/.* needs \([0-9][0-9]*\) bytes, has [0-9][0-9]*$/\1/p' "$err")
+    [ -n "$need" ] || fail "no '... needs N bytes, has M': $(cat "$err")"
+}
+
+psnr() {
+    works compare "$1" "$2" --json
+    json "$out" psnr
+}
+
+# WIDTHxHEIGHT by the header of a PNG, after a look at its first and last bytes.
+png_size() {
+    [ "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a ] || fail "$1 does not begin like a PNG"
+    [ "$(tail -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 49454e44ae426082 ] || fail "$1 does not end like a PNG"
+    od -An -tu1 -j16 -N8 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 "x" (($5 * 256 + $6) * 256 + $7) * 256 + $8 }'
+}
+
+# ---- pictures ----
+
+pictures_png_ppm_and_standard_output() {
+    works render "$scenes/balls.nff" -o a.png -s 60x45
+    [ ! -s "$out" ] || fail "words on standard output"
+    [ "$(png_size a.png)" = 60x45 ] || fail "the PNG is $(png_size a.png)"
+    works render "$scenes/balls.nff" -o a.ppm -s 60x45
+    [ "$(head -n 3 a.ppm | tr '\n' ' ')" = "P6 60 45 255 " ] || fail "the PPM's header is $(head -c 20 a.ppm | tr '\n' ' ')"
+    [ "$(wc -c <a.ppm)" -eq $((13 + 60 * 45 * 3)) ] || fail "the PPM has $(wc -c <a.ppm) bytes"
+    [ "$(psnr a.png a.ppm)" = 99 ] || fail "PNG and PPM differ"
+    works render "$scenes/balls.nff" -o - -s 60x45
+    same "$out" a.png "PNG on standard output and in a file differ"
+    works render "$scenes/balls.nff" -s 60x45
+    [ ! -s "$out" ] || fail "without -o something came on standard output"
+    [ "$(ls -A | tr '\n' ' ')" = "a.png a.ppm " ] || fail "left $(ls -A | tr '\n' ' ')"
+}
+
+picture_has_the_scene_s_size() {
+    works render "$scenes/tetra.nff" -o a.png
+    [ "$(png_size a.png)" = 512x512 ] || fail "it is $(png_size a.png)"
+}
+
+picture_shows_something() {
+    # a black picture would equal itself in every other case
+    works render "$scenes/balls.nff" -o a.ppm -s 60x45
+    [ "$(tail -c 8100 a.ppm | od -An -v -tx1 -w3 | sort -u | wc -l)" -gt 100 ] || fail "under 100 colours"
+}
+
+rules_spd_draws_corners() {
+    works render "$scenes/tetra.nff" --rules spd -s 40x30 -o a.png
+    [ "$(png_size a.png)" = 41x31 ] || fail "it is $(png_size a.png), expected 41x31"
+}
+
+short_form() {
+    works render "$scenes/balls.nff" -o long.png -s 50x40 -j 2
+    works "$scenes/balls.nff" short.png -s 50x40 -j 2
+    same long.png short.png "not the picture of render"
+    works "$scenes/balls.nff" - -s 50x40
+    same long.png "$out" "not the picture of render on standard output"
+    works "$scenes/balls.nff" short.ppm --size=50x40
+    [ "$(psnr short.png short.ppm)" = 99 ] || fail "the PPM differs"
+    cp "$scenes/balls.nff" render.nff
+    works ./render.nff local.png -s 50x40
+    same long.png local.png "another name, another picture"
+}
+
+option_values_with_and_without_equals() {
+    works render "$scenes/balls.nff" -o a.ppm --size 40x30 --grid 9 --approx shadow,reflected --approx-depth 0 --depth 3 \
+        --samples 4 --curtail 0.25 --curtail-when more --threads 2 --memory 1M --method mset --stats a.json
+    works render --size=40x30 --grid=9 --approx=shadow,reflected --approx-depth=0 --depth=3 --samples=4 --curtail=0.25 \
+        --curtail-when=more --threads=2 --memory=1024K --method=mset --stats=b.json --output=b.ppm "$scenes/balls.nff"
+    works render -j2 -mmset -s40x30 -oc.ppm --grid 9x9x9 --approx shadow,reflected --approx-depth 0 --depth 3 --samples 4 \
+        --curtail 0.25 --curtail-when more --memory 1048576 -- "$scenes/balls.nff"
+    same a.ppm b.ppm "--opt VALUE and --opt=VALUE give different pictures"
+    same a.ppm c.ppm "long and short options give different pictures"
+    [ "$(json a.json memory budget)" = 1048576 ] || fail "--memory 1M is $(json a.json memory budget)"
+    [ "$(json b.json memory budget)" = 1048576 ] || fail "--memory=1024K is $(json b.json memory budget)"
+    [ "$(json a.json grid)" = "[9,9,9]" ] || fail "--grid 9 is $(json a.json grid)"
+    [ "$(json a.json approx)" = '["shadow","reflected"]' ] || fail "--approx is $(json a.json approx)"
+}
+
+camera_options() {
+    works render "$scenes/tetra.nff" -s 30x30 -o a.ppm
+    set -- $(awk '$1 ~ /^(from|at|up|angle)$/ { if ($1 == "angle") print $2; else print $2 "," $3 "," $4 }' "$scenes/tetra.nff")
+    works render "$scenes/tetra.nff" -s 30x30 --from "$1" --at "$2" --up "$3" --angle "$4" -o b.ppm
+    same a.ppm b.ppm "the scene's own view by options gives another picture"
+    works render "$scenes/tetra.nff" -s 30x30 --angle 60 -o c.ppm
+    cmp -s a.ppm c.ppm && fail "--angle changes nothing"
+    return 0
+}
+
+method_aset_is_mset_approximating() {
+    works render "$scenes/balls.nff" -s 40x40 -m aset -o a.ppm
+    works render "$scenes/balls.nff" -s 40x40 -m mset --approx all --approx-depth 1 -o b.ppm
+    works render "$scenes/balls.nff" -s 40x40 -m mset -o c.ppm
+    same a.ppm b.ppm "not the picture of --approx all --approx-depth 1"
+    cmp -s a.ppm c.ppm && fail "it is the exact picture"
+    return 0
+}
+
+mset_equals_brute() {
+    local scene name size
+    for scene in balls:2 gears:1 mount:3 rings:1 teapot:2 tetra:3 tree:3; do
+        name=${scene%:*} size=${scene#*:}
+        works scene "$name" --size "$size" -o s.nff
+        works render s.nff -s 40x40 -o mset.png -m mset --stats mset.json
+        works render s.nff -s 40x40 -o brute.png -m brute --stats brute.json
+        [ "$(psnr mset.png brute.png)" = 99 ] || fail "$scene: psnr $(psnr mset.png brute.png)"
+        [ "$(json mset.json rays)" = "$(json brute.json rays)" ] || fail "$scene: other rays"
+    done
+}
+
+brute_tests_every_object_for_every_ray() {
+    local kind rays=0
+    works render "$scenes/balls.nff" -s 30x20 -m brute --stats s.json
+    for kind in primary shadow reflected refracted; do
+        rays=$((rays + $(json s.json rays $kind)))
+    done
+    [ "$(json s.json rays primary)" = 600 ] || fail "$(json s.json rays primary) primary rays for 30 x 20 pixels"
+    [ "$(json s.json work tests)" -eq $((rays * $(json s.json scene objects))) ] ||
+        fail "$(json s.json work tests) tests of $rays rays and $(json s.json scene objects) objects"
+}
+
+threads_draw_the_same_picture() {
+    local options threads
+    for options in "" "-m aset" "-m brute" "--samples 4"; do
+        for threads in 1 2 3; do
+            works render "$scenes/balls.nff" -s 50x41 $options -j $threads -o $threads.ppm
+            same_rows 1.ppm $threads.ppm 50 "$options -j $threads"
+        done
+    done
+    works render "$scenes/balls.nff" -s 16x2 -o few.ppm
+    works render "$scenes/balls.nff" -s 16x2 -j 40 -o many.ppm
+    same few.ppm many.ppm "more threads than rows"
+}
+
+rows_are_pieces_of_the_picture() {
+    local piece
+    works render "$scenes/balls.nff" -s 50x40 -o all.ppm --stats all.json
+    for piece in 0:1 1:17 17:18 18:40; do
+        works render "$scenes/balls.nff" -s 50x40 --rows $piece -o piece.ppm
+        [ "$(head -n 2 piece.ppm | tail -n 1)" = "50 $((${piece#*:} - ${piece%:*}))" ] || fail "rows $piece: wrong size"
+        tail -c $((50 * 3 * (${piece#*:} - ${piece%:*}))) piece.ppm >>joined
+    done
+    { printf 'P6\n50 40\n255\n' && cat joined; } >joined.ppm
+    same_rows all.ppm joined.ppm 50 "pieces"
+    works render "$scenes/balls.nff" -s 50x40 --rows 10:30 -j 3 -o piece.ppm --stats piece.json
+    { printf 'P6\n50 20\n255\n' && tail -c +$((14 + 50 * 3 * 10)) all.ppm | head -c $((50 * 3 * 20)); } >cut.ppm
+    same_rows cut.ppm piece.ppm 50 "rows 10:30 of three threads"
+    [ "$(json piece.json rays primary)" = 1000 ] || fail "20 rows of 50 have $(json piece.json rays primary) primary rays"
+    tool render "$scenes/balls.nff" -s 50x40 --rows 30:41 -o behind.ppm
+    [ $status -ne 0 ] && [ "$(wc -l <"$err")" -eq 1 ] && [ ! -e behind.ppm ] || fail "rows behind the last: status $status"
+}
+
+# ---- words ----
+
+help_and_version() {
+    local command word
+    works --help
+    cp "$out" commands
+    for command in render info scene compare; do
+        grep -q "^ *$command " commands || fail "aset --help does not name $command"
+        works $command --help
+        cp "$out" long
+        [ -s long ] || fail "aset $command --help says nothing"
+        works $command -h
+        same long "$out" "aset $command: -h and --help differ"
+    done
+    works render --help
+    for word in -o -m --approx --approx-depth --grid --cells --curtail --curtail-when --memory -s --samples --depth --rules \
+        --rows -j --from --at --up --angle --stats --quiet; do
+        grep -q -e "$word[ ,]" "$out" || fail "aset render --help does not name $word"
+    done
+    works scene --help
+    for word in balls gears mount rings teapot tetra tree snow tetra-moon skull; do
+        grep -q "^ *$word " "$out" || fail "aset scene --help does not name $word"
+    done
+    works --version
+    grep -Eqx 'aset [0-9]+(\.[0-9]+)+' "$out" || fail "aset --version says $(cat "$out")"
+}
+
+wrong_commands() {
+    wrong_words
+    wrong_words nonsense
+    wrong_words --nonsense
+    wrong_words ""
+    wrong_words Render x.nff
+    wrong_words render
+    wrong_words render a.nff b.nff
+    wrong_words "$scenes/balls.nff"
+    wrong_words "$scenes/balls.nff" -q
+    wrong_words "$scenes/balls.nff" a.png b.png
+    wrong_words info
+    wrong_words info a.nff b.nff
+    wrong_words scene
+    wrong_words scene balls tetra
+    wrong_words scene nonsense
+    wrong_words compare
+    wrong_words compare a.png
+    wrong_words compare a.png b.png c.png
+}
+
+wrong_options() {
+    local option
+    for option in --nonsense -x --nonsense=1 --quiet=1 -o --grid; do
+        wrong_words render "$scenes/balls.nff" $option
+    done
+    wrong_words info --nonsense x.nff
+    wrong_words scene --nonsense balls
+    wrong_words compare --nonsense a.png b.png
+    wrong_words render "$scenes/balls.nff" -o - --stats -
+    wrong_words compare a.png b.png -o -
+}
+
+wrong_values() {
+    local pair
+    for pair in -o=a.jpg -o=a -o=.png --method=nonsense --approx=nonsense --approx=all, --approx= --approx-depth=-1 \
+        --approx-depth=1.5 --grid=0 --grid=5x5 --grid=5x5x0 --grid=5x5x5x5 --grid=-1 --grid=1e3 --grid=999999999 --grid= \
+        --cells=nonsense --curtail=-1 --curtail=nan --curtail=inf --curtail=0x1 --curtail=half --curtail-when=never \
+        --memory=-1 --memory=1T --memory=1.5M --memory=M --memory= --memory=99999999999999999999 --size=0x5 --size=5x0 \
+        --size=5 --size=5x --size=x5 --size=5x5x5 --size=-5x5 --size=1000000x1000000 --samples=0 --samples=3 --samples=-4 \
+        --depth=0 --depth=-1 --depth=99999999999 --rules=nonsense --rows=5 --rows=5:5 --rows=6:5 --rows=:5 --rows=-1:5 \
+        --threads=0 --threads=-1 --threads=x --threads=4294967297 --from=1,2 --from=1,2,3,4 --from=nan,0,0 --at=inf,0,0 \
+        --at=1e99,0,0 --up=a,b,c --angle=0 --angle=180 --angle=-5 --angle=nan; do
+        wrong_words render "$scenes/balls.nff" "${pair%%=*}" "${pair#*=}"
+    done
+    for pair in 0 -1 x 99999 1.5 ""; do
+        wrong_words scene tetra --size "$pair"
+    done
+    wrong_words compare a.png b.png -o a.gif
+    wrong_words info "$scenes/balls.nff" --grid 0
+}
+
+# ---- bad scenes ----
+
+# render refuses the scene FILE in this way and leaves no picture.
+bad_file() {
+    local start=$1 file=$2 before
+    before=$(ls -A)
+    tool render "$file" -o picture.png --stats picture.json
+    refused 1 "$start"
+    [ "$(ls -A)" = "$before" ] || fail "left $(ls -A | tr '\n' ' ')"
+    [ ! -s "$out" ] || fail "standard output is not empty"
+    tool info "$file"
+    (refused 1 "$start") || fail "info: $(cat "$why")"
+    [ ! -s "$out" ] || fail "info: standard output is not empty"
+}
+
+# The same for a scene with this text (printf's escapes), wrong in this line.
+bad_text() {
+    printf '%b' "$2" >scene.nff
+    bad_file "aset: scene.nff:$1: " scene.nff
+}
+
+bad_missing_file() { bad_file "aset: nothing.nff: " nothing.nff; }
+
+bad_empty_file() { bad_text 1 ''; }
+
+bad_blank_file() { bad_text 4 '\n\n  \n'; }
+
+bad_folder() {
+    mkdir folder.nff folder
+    bad_file "aset: folder.nff: " folder.nff
+    bad_file "aset: folder: " folder
+}
+
+bad_unknown_extension() {
+    cp "$scenes/balls.nff" scene.xyz
+    cp "$scenes/balls.nff" nff
+    bad_file "aset: scene.xyz: " scene.xyz
+    bad_file "aset: nff: " nff
+}
+
+bad_name_is_one_line() {
+    # a line end in the file's name must not break the error in two
+    bad_file "aset: no?where.nff: " "no
+where.nff"
+}
+
+bad_picture_for_a_scene() {
+    works render "$scenes/balls.nff" -s 8x8 -o a.png
+    mv a.png a.nff
+    bad_file "aset: a.nff:1: " a.nff
+}
+
+bad_long_word() {
+    { cat "$scenes/balls.nff" && head -c 100000 /dev/zero | tr '\0' a; } >scene.nff
+    bad_file "aset: scene.nff:$(($(wc -l <"$scenes/balls.nff") + 1)): " scene.nff
+}
+
+bad_scene_on_standard_input() {
+    head -n 4 "$scenes/balls.nff" >cut
+    status=0
+    "$aset" render - -o a.png <cut >"$out" 2>"$err" || status=$?
+    refused 1 "aset: "
+    grep -q ':[0-9][0-9]*: ' "$err" || fail "no line: $(cat "$err")"
+    status=0
+    "$aset" render - -o a.png <&- >"$out" 2>"$err" || status=$?
+    refused 1 "aset: "
+    [ "$(ls -A)" = cut ] || fail "left $(ls -A)"
+}
+
+# A file that lacks its last lines, cut within each kind of entity: the error names the line where it ends.
+bad_cut_off_files() {
+    local lines total
+    works scene teapot --size 1 -o patches.nff
+    works scene rings --size 1 -o cones.nff
+    # within the view, behind "p N", within a polygon, within a patch
+    for lines in 2 4 7; do
+        head -n $lines "$scenes/tetra.nff" >cut.nff
+        bad_file "aset: cut.nff:$((lines + 1)): " cut.nff
+    done
+    for lines in "p 3$" "pp "; do
+        total=$(grep -n "$lines" patches.nff "$scenes/tetra.nff" | sed -n '$s/^[^:]*:\([0-9]*\):.*/\1/p')
+        [ "$lines" = "pp " ] && total=$(grep -n "$lines" patches.nff | tail -n 1 | cut -d: -f1)
+        if [ "$lines" = "pp " ]; then cp patches.nff whole; else cp "$scenes/tetra.nff" whole; fi
+        head -n "$total" whole >cut.nff
+        bad_file "aset: cut.nff:$((total + 1)): " cut.nff
+        head -n $((total + 2)) whole >cut.nff
+        bad_file "aset: cut.nff:$((total + 3)): " cut.nff
+        # without the line end, half of the point's numbers gone
+        { head -n $((total + 1)) whole && printf '0.5'; } >cut.nff
+        bad_file "aset: cut.nff:$((total + 2)): " cut.nff
+    done
+    { cat "$scenes/balls.nff" && printf 's 1 2'; } >cut.nff
+    bad_file "aset: cut.nff:$(($(wc -l <"$scenes/balls.nff") + 1)): " cut.nff
+    { cat cones.nff && printf 'c 1 2 3 1\n'; } >cut.nff
+    bad_file "aset: cut.nff:$(($(wc -l <cones.nff) + 2)): " cut.nff
+    { cat "$scenes/balls.nff" && printf 'f 1 0.5\n\n'; } >cut.nff
+    bad_file "aset: cut.nff:$(($(wc -l <"$scenes/balls.nff") + 3)): " cut.nff
+}
+
+# Every seventh prefix of a file is drawn, or refused in one line.
+bad_prefixes() {
+    local n=0 size
+    head -n 16 "$scenes/tetra.nff" >whole
+    size=$(wc -c <whole)
+    while [ $n -lt "$size" ]; do
+        head -c $n whole >cut.nff
+        tool render cut.nff -s 4x4 -o a.png
+        if [ $status -eq 0 ]; then
+            [ -s a.png ] || fail "$n bytes: done, but there is no picture"
+            rm a.png
+        else
+            (refused 1 "aset: cut.nff:") || fail "$n bytes: $(cat "$why")"
+            [ ! -e a.png ] || fail "$n bytes: refused, but there is a picture"
+        fi
+        n=$((n + 7))
+    done
+}
+
+# View and material for the small texts below: lines 1 to 7 and 8.
+view='v\nfrom 0 -5 0\nat 0 0 0\nup 0 0 1\nangle 45\nhither 1\nresolution 16 16\n'
+head="${view}f 1 1 1 1 0 0 0 0\n"
+
+bad_letters_for_numbers() {
+    bad_text 9 "${head}s 0 a 0 1\n"
+    bad_text 9 "${head}s 0 0 0 1x\n"
+    bad_text 9 "${head}s 0 0 0x10 1\n"
+    bad_text 9 "${head}p three\n"
+    bad_text 2 'v\nfrom x y z\n'
+    bad_text 8 "${view}f red 0 0 1 0 0 0 0\n"
+    bad_text 9 "${head}q 1 2 3\n"
+    bad_text 9 "${head}1 2 3\n"
+    bad_text 9 "${head}s 0 0 \0000 1\n"
+}
+
+bad_nan_and_infinity() {
+    local word
+    for word in nan NaN -nan inf -inf Infinity 1e999 -1e999 1e39x; do
+        bad_text 9 "${head}s 0 0 $word 1\n"
+        bad_text 11 "${head}p 3\n0 0 0\n0 $word 0\n1 1 1\n"
+        bad_text 8 "${view}f $word 1 1 1 0 0 0 0\n"
+        bad_text 2 "v\nfrom 0 $word 0\n"
+        bad_text 5 "v\nfrom 0 1 0\nat 0 0 0\nup 0 0 1\nangle $word\n"
+        bad_text 9 "${head}l 0 0 $word\n"
+    done
+}
+
+bad_counts() {
+    local points='0 0 0\n1 0 0\n0 1 0\n' word
+    for word in 0 -1 -3 1 2 3.5 +-3 4294967296 99999999999999999999; do
+        bad_text 9 "${head}p $word\n$points"
+        bad_text 9 "${head}pp $word\n$points$points"
+    done
+    for word in 0 -1 65536 1000000000 1.5; do
+        bad_text 7 "${view%resolution*}resolution $word 16\n${head#"$view"}"
+        bad_text 7 "${view%resolution*}resolution 16 $word\n${head#"$view"}"
+    done
+}
+
+bad_announced_but_missing_points() {
+    # not a byte may be set aside for what a file only announces
+    bad_text 13 "${head}p 1000000000\n0 0 0\n1 0 0\n0 1 0\n"
+    bad_text 12 "${head}pp 1000000000\n0 0 0 0 0 1\n1 0 0 0 0 1\n"
+    bad_text 13 "${head}p 4\n0 0 0\n1 0 0\n0 1 0\ns 0 0 0 1\n"
+}
+
+bad_order() {
+    bad_text 2 "f 1 1 1 1 0 0 0 0\ns 0 0 0 1\n$view"
+    bad_text 8 "${view}s 0 0 0 1\n"
+    bad_text 8 "${view}p 3\n0 0 0\n1 0 0\n0 1 0\n"
+    bad_text 2 'f 1 1 1 1 0 0 0 0\n'
+}
+
+bad_views() {
+    bad_text 1 'v\nfrom 0 0 0\nat 0 0 0\nup 0 0 1\nangle 45\nhither 1\nresolution 16 16\n'
+    bad_text 1 'v\nfrom 0 1 0\nat 0 0 0\nup 0 0 0\nangle 45\nhither 1\nresolution 16 16\n'
+    bad_text 1 'v\nfrom 0 1 0\nat 0 0 0\nup 0 2 0\nangle 45\nhither 1\nresolution 16 16\n'
+    bad_text 5 'v\nfrom 0 1 0\nat 0 0 0\nup 0 0 1\nangle 0\nhither 1\nresolution 16 16\n'
+    bad_text 5 'v\nfrom 0 1 0\nat 0 0 0\nup 0 0 1\nangle 180\nhither 1\nresolution 16 16\n'
+    bad_text 6 'v\nfrom 0 1 0\nup 0 0 1\nangle 45\nresolution 16 16\nf 1 1 1 1 0 0 0 0\n'
+}
+
+bad_objects() {
+    bad_text 9 "${head}s 0 0 0 0\n"
+    bad_text 9 "${head}c 0 0 0 1 0 0 0 1\n"
+    bad_text 9 "${head}c 0 0 0 0 0 0 1 0\n"
+    bad_text 9 "${head}c 0 0 0 1 0 0 1 -1\n"
+    bad_text 8 "${view}f 1 1 1 -1 0 0 0 0\n"
+}
+
+bad_camera_options() {
+    local options
+    for options in "--from 0,0,0 --at 0,0,0" "--up 0,0,0" "--from 0,0,5 --at 0,0,0 --up 0,0,1"; do
+        tool render "$scenes/balls.nff" -o a.png $options
+        (refused 1 "aset: ") || fail "$options: $(cat "$why")"
+        [ -z "$(ls -A)" ] || fail "$options: left $(ls -A)"
+    done
+}
+
+# Numbers at the ends of what a float can say: a picture or one line, never a crash.
+extreme_coordinates() {
+    local object method
+    for object in 's 0 0 0 3e38' 's 1e38 1e38 0 1e38\ns -1e38 -1e38 -1e38 3e38' 's 1e38 0 0 1\ns -1e38 0 0 1' 'p 3\n3e38 0 0\n-3e38 0 0\n0 3e38 0' \
+        'c 3e38 0 0 1 -3e38 0 0 1' 's 0 0 0 1e19' 's 0 0 0 1e-40' 's 1e10 1e10 1e10 1e-10' \
+        'f 1 0 0 0 1 1 1 1e11\ns 0 0 0 1e18' 'p 3\n0 0 0\n1 1 1\n2 2 2' 'p 3\n1 1 1\n1 1 1\n1 1 1'; do
+        printf '%b' "$head$object\n" >scene.nff
+        for method in mset aset brute; do
+            tool render scene.nff -m $method -o a.png
+            if [ $status -eq 0 ]; then
+                [ ! -s "$err" ] || fail "$object, $method: done, but it says $(head -n 1 "$err")"
+                rm a.png
+            else
+                (refused 1 "aset: scene.nff:") || fail "$object, $method: $(cat "$why")"
+            fi
+        done
+    done
+}
+
+scene_text_is_read_freely() {
+    # line ends of other systems, no last line end, comments, no objects at all
+    works render "$scenes/balls.nff" -s 20x20 -o a.ppm
+    sed 's/$/\r/' "$scenes/balls.nff" >scene.nff
+    works render scene.nff -s 20x20 -o b.ppm
+    same a.ppm b.ppm "carriage returns change the picture"
+    { printf '# first\n' && sed 's/$/ # more/' "$scenes/balls.nff" && printf '# last'; } >scene.NFF
+    works render scene.NFF -s 20x20 -o b.ppm
+    same a.ppm b.ppm "comments change the picture"
+    printf '%b' "b 1 0.2 0\n$view" >scene.nff
+    works render scene.nff -o c.ppm
+    [ "$(tail -c 768 c.ppm | od -An -v -tu1 -w3 | sort -u | tr -s ' ')" = " 255 51 0" ] || fail "no plain background"
+}
+
+# ---- memory ----
+
+# With these options exactly the bytes asked for are enough, all of them are used, and one byte less is refused alike.
+exact_budget() {
+    local scene=$1
+    shift
+    need_of "$scene" "$@" -s 16x16 --memory 1
+    set -- "$scene" "$@" -s 16x16 "$need"
+    local least=$need
+    works render "${@:1:$#-1}" --memory "$least" --stats s.json -o a.png
+    [ "$(json s.json memory budget)" = "$least" ] || fail "$*: the budget is told as $(json s.json memory budget)"
+    [ "$(json s.json memory peak)" -le "$least" ] || fail "$*: the peak is $(json s.json memory peak)"
+    works render "${@:1:$#-1}" --memory "$((least + 1))" -o b.png
+    same a.png b.png "$*: one byte more gives another picture"
+    rm a.png b.png
+    need_of "${@:1:$#-1}" --memory "$((least - 1))" -o a.png
+    [ "$need" = "$least" ] || fail "$*: with one byte less it needs $need"
+    [ ! -e a.png ] || fail "$*: too little memory, but a picture"
+    need_of "${@:1:$#-1}" --memory "$((least / 2))"
+    [ "$need" = "$least" ] || fail "$*: with half of it it needs $need"
+    need=$least
+}
+
+budget_exact() {
+    local scene grid
+    for scene in balls tetra; do
+        for grid in 1 8 20 3x40x1; do
+            exact_budget "$scenes/$scene.nff" --grid $grid
+        done
+    done
+    exact_budget "$scenes/balls.nff" --grid 20 -m brute
+}
+
+budget_approximate() {
+    local grid
+    for grid in 1 8 20 3x40x1; do
+        exact_budget "$scenes/balls.nff" --grid $grid --approx all
+        exact_budget "$scenes/tetra.nff" --grid $grid --approx all --approx-depth 0
+    done
+}
+
+budget_of_two_threads() {
+    local one
+    exact_budget "$scenes/balls.nff" --grid 12 -j 1
+    one=$need
+    exact_budget "$scenes/balls.nff" --grid 12 -j 2
+    [ "$need" -gt "$one" ] || fail "two threads need $need bytes, one needs $one"
+    exact_budget "$scenes/balls.nff" --grid 12 -j 2 --approx all --depth 9
+}
+
+budget_is_what_info_says() {
+    exact_budget "$scenes/balls.nff" --grid 12
+    works info "$scenes/balls.nff" --grid 12
+    grep '^mset' "$out" | grep -qw "$need" || fail "info does not say $need for mset: $(grep '^mset' "$out")"
+    exact_budget "$scenes/balls.nff" --grid 12 --approx all
+    works info "$scenes/balls.nff" --grid 12
+    grep '^mset' "$out" | grep -qw "$need" || fail "info does not say $need for mset: $(grep '^mset' "$out")"
+}
+
+# Less and less memory makes the grid coarser and never the picture wrong, until the need is told, which then is enough.
+automatic_grid() {
+    local memory=65536 scene=$scenes/balls.nff voxels last=999999999
+    works render "$scene" -s 20x20 -o full.ppm
+    while tool render "$scene" -s 20x20 --grid auto --memory $memory --stats s.json -o a.ppm && [ $status -eq 0 ]; do
+        [ ! -s "$err" ] || fail "$memory bytes: $(head -n 1 "$err")"
+        [ "$(json s.json memory peak)" -le $memory ] || fail "$memory bytes: the peak is $(json s.json memory peak)"
+        same full.ppm a.ppm "$memory bytes: another picture"
+        voxels=$(($(json s.json grid | tr -d '[]' | tr ',' '*')))
+        [ "$voxels" -le "$last" ] || fail "$memory bytes: $voxels voxels, but $last with more memory"
+        last=$voxels
+        memory=$((memory * 9 / 10))
+    done
+    [ "$last" -lt 999999999 ] || fail "64K are too little: $(cat "$err")"
+    exact_budget "$scene" --grid auto
+    exact_budget "$scene" --grid auto --approx all -j 2
+}
+
+# ---- statistics ----
+
+statistics_are_json() {
+    local member object
+    works render "$scenes/balls.nff" -s 30x30 -m aset --stats s.json
+    [ ! -s "$out" ] || fail "words on standard output"
+    json_valid s.json
+    works render "$scenes/balls.nff" -s 30x30 -m aset --stats -
+    json_valid "$out"
+    for member in method approx approx_depth cells grid; do
+        [ -n "$(json s.json $member)" ] || fail "no $member"
+    done
+    while read -r object members; do
+        for member in $members; do
+            json s.json $object $member | grep -Eqx '[0-9]+(\.[0-9]+)?(e-?[0-9]+)?' ||
+                fail "$object.$member is '$(json s.json $object $member)'"
+        done
+    done <<'END'
+scene objects polygons patches spheres cones materials lights
+structure interior leaves empty nonempty references density
+rays primary primary_hit shadow shadow_hit reflected refracted secondary_hit curtailed
+work cells_visited nonempty_visited tests test_hits approx_hits
+textures used capacity merged
+memory budget used peak objects vertices materials cells references voxels textures scratch
+time load_s build_s render_s
+END
+    [ "$(json s.json method)" = '"mset"' ] || fail "method is $(json s.json method)"
+    [ "$(json s.json scene spheres)" = "$(grep -c '^s ' "$scenes/balls.nff")" ] || fail "$(json s.json scene spheres) spheres"
+    [ "$(json s.json structure empty)" -eq $(($(json s.json structure leaves) - $(json s.json structure nonempty))) ] ||
+        fail "empty is not leaves - nonempty"
+}
+
+statistics_are_the_same_for_every_run() {
+    local options threads
+    for options in "" "-m aset" "-m brute"; do
+        for threads in 1 1 2 3; do
+            works render "$scenes/balls.nff" -s 30x31 $options -j $threads --stats s.json
+            # without the wall clock, and the memory: every thread has a scratch of its own
+            sed 's/"memory":.*//' s.json >$threads
+            [ "$(wc -c <$threads)" -gt 300 ] || fail "$options: 'memory' is not where it was expected"
+            same 1 $threads "$options: other counts with -j $threads: $(cat 1 $threads)"
+        done
+        mv 1 last
+    done
+}
+
+report_is_text() {
+    works render "$scenes/balls.nff" -s 16x16 --report
+    [ "$(wc -l <"$out")" -gt 5 ] || fail "only $(wc -l <"$out") lines"
+}
+
+# ---- other commands ----
+
+scenes_are_written() {
+    local name
+    for name in balls gears mount rings teapot tetra tree snow tetra-moon skull; do
+        works scene $name --size 1
+        cp "$out" $name.nff
+        works scene $name --size=1 -o again.nff
+        same $name.nff again.nff "$name: file and standard output differ"
+        works render $name.nff -s 16x16 --stats s.json
+        [ "$(json s.json scene objects)" -gt 0 ] || fail "$name has no objects"
+    done
+}
+
+scene_into_render() {
+    works render "$scenes/tetra.nff" -s 32x32 -o a.png
+    "$aset" scene tetra --size 3 2>"$err" | "$aset" render - -s 32x32 -o x.png 2>>"$err"
+    [ "${PIPESTATUS[*]}" = "0 0" ] || fail "status ${PIPESTATUS[*]}: $(cat "$err")"
+    [ ! -s "$err" ] || fail "it says: $(head -n 1 "$err")"
+    same a.png x.png "not the picture of the file"
+    "$aset" render - -s 32x32 -o y.png <"$scenes/tetra.nff" || fail "a file as standard input"
+    same a.png y.png "a file as standard input gives another picture"
+}
+
+compare_figures_and_status() {
+    works render "$scenes/balls.nff" -s 40x40 -o a.png
+    works render "$scenes/balls.nff" -s 40x40 -m aset -o b.png
+    works render "$scenes/balls.nff" -s 40x41 -o tall.png
+    works compare a.png a.png --json
+    json_valid "$out"
+    [ "$(json "$out" psnr) $(json "$out" rmse) $(json "$out" ssim) $(json "$out" max_difference) $(json "$out" differing)" = \
+        "99 0 1 0 0" ] || fail "equal pictures: $(cat "$out")"
+    works compare a.png b.png --json -o diff.png
+    json_valid "$out"
+    awk -v psnr="$(json "$out" psnr)" -v ssim="$(json "$out" ssim)" -v differing="$(json "$out" differing)" \
+        'BEGIN { exit !(psnr > 5 && psnr < 98 && ssim > 0 && ssim < 1 && differing > 0 && differing <= 1) }' ||
+        fail "different pictures: $(cat "$out")"
+    [ "$(png_size diff.png)" = 40x40 ] || fail "the difference is $(png_size diff.png)"
+    works compare b.png a.png --json -o diff2.png
+    same diff.png diff2.png "the difference depends on the order"
+    works compare a.png b.png
+    [ -s "$out" ] || fail "no figures without --json"
+}
+
+compare_refuses() {
+    local bad
+    works render "$scenes/balls.nff" -s 40x40 -o a.png
+    works render "$scenes/balls.nff" -s 40x41 -o tall.png
+    works render "$scenes/balls.nff" -s 40x40 -o a.ppm
+    head -c 300 a.png >cut.png
+    head -c 300 a.ppm >cut.ppm
+    : >empty.png
+    cp "$scenes/balls.nff" text.png
+    mkdir folder.png
+    for bad in tall.png cut.png cut.ppm empty.png text.png folder.png missing.png; do
+        tool compare a.png $bad --json -o diff.png
+        (refused 1 "aset: $bad: ") || fail "$bad: $(cat "$why")"
+        [ ! -s "$out" ] || fail "$bad: figures all the same"
+        [ ! -e diff.png ] || fail "$bad: a difference all the same"
+    done
+    tool compare missing.png a.png
+    refused 1 "aset: missing.png: "
+}
+
+# ---- outputs ----
+
+# Standard output (or, with -o in the words, nothing else) cannot be written: one line, status 1.
+cannot_write() {
+    (refused 1 "aset: ") || fail "$*: $(cat "$why")"
+}
+
+full_disk() {
+    local command
+    if [ ! -c /dev/full ]; then
+        echo "no /dev/full here" >"$top/skipped"
+        return
+    fi
+    for command in "--help" "--version" "render --help" "info $scenes/balls.nff" "scene tetra" "scene balls --size 1" \
+        "render $scenes/balls.nff -s 16x16 -o -" "render $scenes/balls.nff -s 300x300 -o -" \
+        "render $scenes/balls.nff -s 16x16 --stats -" "render $scenes/balls.nff -s 16x16 --report" \
+        "compare $scenes/balls.png $scenes/balls.png --json"; do
+        status=0
+        "$aset" $command >/dev/full 2>"$err" || status=$?
+        cannot_write "$command"
+    done
+    ln -s /dev/full full.png
+    ln -s /dev/full full.ppm
+    for command in "-o full.png" "-o full.ppm" "-o full.ppm -j 3" "--stats full.ppm"; do
+        tool render "$scenes/balls.nff" -s 200x200 $command
+        cannot_write "$command"
+    done
+    [ -c /dev/full ] && [ -L full.png ] || fail "the link or the device is gone"
+}
+
+file_size_limit() {
+    local file
+    ulimit -S -f 8 || fail "no file size limit can be set"
+    echo old >old.ppm
+    for file in new.png new.ppm old.ppm; do
+        tool render "$scenes/balls.nff" -s 300x300 -o $file
+        cannot_write "-o $file"
+    done
+    [ "$(ls -A) $(cat old.ppm)" = "old.ppm old" ] || fail "left $(ls -A)"
+    tool scene balls --size 4 -o new.nff
+    cannot_write "scene"
+    [ "$(ls -A) $(cat old.ppm)" = "old.ppm old" ] || fail "scene left $(ls -A)"
+}
+
+closed_pipe() {
+    local command
+    for command in "scene balls --size 4" "render $scenes/balls.nff -s 16x16 -o -" "render $scenes/balls.nff -s 16x16 --stats -" \
+        "info $scenes/balls.nff" "--help"; do
+        # the reader has ended long before the first byte
+        { sleep 0.1 && "$aset" $command 2>"$err"; } | true
+        status=${PIPESTATUS[0]}
+        cannot_write "$command | true"
+    done
+    "$aset" scene balls --size 4 2>"$err" | head -c 10 >/dev/null
+    status=${PIPESTATUS[0]}
+    cannot_write "scene | head"
+    for command in "scene balls --size 1" "render $scenes/balls.nff -s 16x16 -o -" "--version"; do
+        status=0
+        "$aset" $command >&- 2>"$err" || status=$?
+        cannot_write "$command with standard output closed"
+    done
+}
+
+outputs_that_cannot_be() {
+    mkdir folder.png
+    for output in nowhere/a.png folder.png /a/b/c.ppm; do
+        tool render "$scenes/balls.nff" -s 16x16 -o $output
+        (refused 1 "aset: $output: ") || fail "-o $output: $(cat "$why")"
+    done
+    tool render "$scenes/balls.nff" -s 16x16 --stats nowhere/s.json
+    refused 1 "aset: nowhere/s.json: "
+    tool scene tetra -o nowhere/s.nff
+    refused 1 "aset: nowhere/s.nff: "
+    [ "$(ls -A)" = folder.png ] || fail "left $(ls -A)"
+}
+
+# A failure leaves the old picture; a success keeps its mode, and the link to it.
+old_output() {
+    echo old >a.ppm
+    chmod 640 a.ppm
+    ln -s a.ppm link.ppm
+    head -n 4 "$scenes/balls.nff" >cut.nff
+    tool render cut.nff -o a.ppm
+    [ $status -eq 1 ] && [ "$(cat a.ppm)" = old ] || fail "a bad scene changes the old picture"
+    tool render "$scenes/balls.nff" --memory 1 -o a.ppm
+    [ $status -eq 1 ] && [ "$(cat a.ppm)" = old ] || fail "too little memory changes the old picture"
+    works render "$scenes/balls.nff" -s 8x8 -o link.ppm
+    [ -L link.ppm ] && [ "$(head -n 1 a.ppm)" = P6 ] || fail "the link is not followed"
+    [ "$(ls -l a.ppm | cut -c1-10)" = -rw-r----- ] || fail "the mode is now $(ls -l a.ppm | cut -c1-10)"
+}
+
+# A signal in the middle of a picture ends the tool and leaves neither a part of the new file nor a change of the old one.
+interrupted() {
+    local signal pid tries threads=1
+    set -m # or else the job would ignore SIGINT, as jobs in the background do
+    echo old >a.png
+    for signal in INT:130 TERM:143 HUP:129; do
+        "$aset" render "$scenes/balls.nff" -m brute -s 4000x4000 --samples 64 -j $threads -o a.png >/dev/null 2>"$err" &
+        pid=$! tries=0
+        until [ -n "$(find . -name '.aset*')" ]; do
+            tries=$((tries + 1))
+            [ $tries -lt 200 ] || { kill -KILL $pid; fail "$signal: no picture in progress after 10 s"; }
+            sleep 0.05
+        done
+        kill -s ${signal%:*} $pid
+        status=0
+        wait $pid || status=$?
+        [ $status -eq ${signal#*:} ] || fail "${signal%:*}: status $status"
+        [ "$(ls -A) $(cat a.png)" = "a.png old" ] || fail "${signal%:*}: left $(ls -A)"
+        threads=$((threads + 1))
+    done
+}
+
+# The bar is drawn on a terminal only, and not there when --quiet is given.
+progress_bar() {
+    local words="$aset render $scenes/balls.nff -m brute -s 500x500"
+    if ! script -qec true /dev/null </dev/null >/dev/null 2>&1; then
+        echo "no script(1) that gives a terminal" >"$top/skipped"
+        return
+    fi
+    script -qec "$words" /dev/null </dev/null >bar 2>&1 || fail "status $? on a terminal"
+    grep -q '%' bar || fail "no bar on a terminal"
+    script -qec "$words --quiet" /dev/null </dev/null >none 2>&1 || fail "status $? with --quiet"
+    [ ! -s none ] || fail "--quiet: $(head -c 80 none)"
+    works render "$scenes/balls.nff" -m brute -s 500x500
+}
+
+# ---- the run ----
+
+mkdir "$scenes"
+"$aset" scene balls --size 2 -o "$scenes/balls.nff" && "$aset" scene tetra --size 3 -o "$scenes/tetra.nff" &&
+    "$aset" render "$scenes/balls.nff" -s 16x16 -o "$scenes/balls.png" || {
+    echo "not ok scenes: the scenes of the cases cannot be made"
+    exit 1
+}
+
+for name in pictures_png_ppm_and_standard_output picture_has_the_scene_s_size picture_shows_something rules_spd_draws_corners \
+    short_form option_values_with_and_without_equals camera_options method_aset_is_mset_approximating mset_equals_brute \
+    brute_tests_every_object_for_every_ray threads_draw_the_same_picture rows_are_pieces_of_the_picture help_and_version \
+    wrong_commands wrong_options wrong_values bad_missing_file bad_empty_file bad_blank_file bad_folder bad_unknown_extension \
+    bad_name_is_one_line bad_picture_for_a_scene bad_long_word bad_scene_on_standard_input bad_cut_off_files bad_prefixes \
+    bad_letters_for_numbers bad_nan_and_infinity bad_counts bad_announced_but_missing_points bad_order bad_views bad_objects \
+    bad_camera_options extreme_coordinates scene_text_is_read_freely budget_exact budget_approximate budget_of_two_threads \
+    budget_is_what_info_says automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text \
+    scenes_are_written scene_into_render compare_figures_and_status compare_refuses full_disk file_size_limit closed_pipe \
+    outputs_that_cannot_be old_output interrupted progress_bar; do
+    case $name in
+    $pattern) ;;
+    *) continue ;;
+    esac
+    rm -f "$why" "$top/skipped"
+    mkdir "$top/$name"
+    if (cd "$top/$name" && "$name") >"$noise" 2>&1; then
+        echo "ok $name$([ ! -e "$top/skipped" ] || echo " # skipped: $(cat "$top/skipped")")"
+        n_passed=$((n_passed + 1))
+    else
+        [ -s "$why" ] || head -n 1 "$noise" >"$why"
+        echo "not ok $name: $(tr '\n' ' ' <"$why")"
+        n_failed=$((n_failed + 1))
+    fi
+    rm -rf "${top:?}/$name"
+done
+echo "$n_passed passed, $n_failed failed"
+[ $n_failed -eq 0 ]
