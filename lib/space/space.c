@@ -95,7 +95,7 @@ static aset_status shrink_to_fit(aset_space_size *size, const aset_scene *scene,
     aset_status status = ASET_OK;
     while (status == ASET_OK && !aset_arena_fits(arena, size->total + reserved(size, options))) {
         if (n[0] == 1 && n[1] == 1 && n[2] == 1) {
-            return ASET_ERR_NOMEM;
+            break; /* nothing is smaller; a summary may still need less than was reserved for it */
         }
         for (int a = 0; a < 3; a++) {
             n[a] = n[a] > 1 ? n[a] - (n[a] + 7) / 8 : 1;
