@@ -4,12 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Scratch for counting marks: the more, the fewer passes over the objects. */
+/* Scratch for counting: the more, the fewer passes over the objects; trees list what they divide, on every level at the most. */
 #define SCRATCH (4u << 20)
+#define SCRATCH_OBJECT (sizeof(aset_box) + 4u * (3u * ASET_DEPTH_TREE_MAX + 1u))
 
 bool measured_open(measured *m, tool_source *source, const aset_counts *counts) {
     m->scene_bytes = ASET_BYTES_SCENE(counts->objects, counts->coordinates, counts->materials, counts->lights);
-    size_t size = m->scene_bytes + SCRATCH;
+    size_t size = m->scene_bytes + SCRATCH + counts->objects * SCRATCH_OBJECT;
     m->block = malloc(size);
     if (m->block == NULL || aset_arena_init(&m->arena, m->block, size) != ASET_OK ||
         aset_scene_init(&m->scene, &m->arena, counts) != ASET_OK) {
@@ -25,10 +26,14 @@ bool measured_open(measured *m, tool_source *source, const aset_counts *counts) 
     return true;
 }
 
+static size_t counts_scratch(const measured *m) {
+    return m->scene.counts.objects * SCRATCH_OBJECT;
+}
+
 /* The summary's bytes, from a space built for it. */
 static bool measure_summary(measured *m, const aset_method *method, const aset_space_options *options,
                             const aset_space_size *size, size_t *bytes) {
-    size_t bound = size->total + ASET_BYTES_SUMMARY(size->n_cells, aset_summary_capacity(&m->scene));
+    size_t bound = size->total + counts_scratch(m) + ASET_BYTES_SUMMARY(size->n_cells, aset_summary_capacity(&m->scene));
     void *block = malloc(bound);
     aset_arena arena;
     aset_space space;
@@ -39,22 +44,20 @@ static bool measure_summary(measured *m, const aset_method *method, const aset_s
     return done;
 }
 
-bool measured_space(measured *m, const char *path, const aset_method *method, const uint32_t grid[3],
+bool measured_space(measured *m, const char *path, const aset_method *method, const aset_space_options *options,
                     aset_space_size *size, size_t *summary_bytes) {
-    aset_space_options options;
-    memset(&options, 0, sizeof options);
-    memcpy(options.divisions, grid, sizeof options.divisions);
-    if (grid[0] == 0) {
-        aset_auto_divisions(&m->scene, 0, options.divisions);
+    aset_space_options chosen = *options;
+    if (chosen.divisions[0] == 0) {
+        aset_auto_divisions(&m->scene, 0, chosen.divisions);
     }
-    aset_status status = aset_space_measure(size, &m->scene, method, &options, &m->arena);
+    aset_status status = aset_space_measure(size, &m->scene, method, &chosen, &m->arena);
     if (status != ASET_OK) {
         tool_error(path, 0, "%s: %s", aset_method_name(method),
                    status == ASET_ERR_LIMIT ? "these divisions give more cells than can be counted, expected fewer"
                                             : aset_status_text(status));
         return false;
     }
-    if (summary_bytes != NULL && !measure_summary(m, method, &options, size, summary_bytes)) {
+    if (summary_bytes != NULL && !measure_summary(m, method, &chosen, size, summary_bytes)) {
         tool_error(path, 0, "%s: the machine has no memory to measure %zu bytes", aset_method_name(method), size->total);
         return false;
     }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const aset_method *const tool_methods[] = {&aset_mset, &aset_brute, NULL};
+const aset_method *const tool_methods[] = {&aset_mset, &aset_set, &aset_grid, &aset_octree, &aset_arts, &aset_excell, &aset_brute, NULL};
 
 const aset_method *tool_method_find(const char *name) {
     for (size_t i = 0; tool_methods[i] != NULL; i++) {
@@ -45,23 +45,29 @@ static aset_space_options space_options(const settings *s, const aset_scene *sce
     aset_space_options options;
     memset(&options, 0, sizeof options);
     memcpy(options.divisions, s->grid, sizeof options.divisions);
+    options.depth = s->tree_depth;
+    options.leaf = s->leaf;
     options.textures = approximates(s) ? aset_summary_capacity(scene) : 0;
     return options;
 }
 
-/* The error of a budget that is too small: how much would do; with automatic divisions, what a single voxel takes. */
+/* The error of a budget that is too small: how much would do; for what is automatic, at its coarsest. */
 static void tell_need(tool_source *source, const settings *s, const aset_counts *counts) {
-    const uint32_t one[3] = {1, 1, 1};
-    bool is_auto = s->grid[0] == 0;
     measured m;
     aset_space_size size;
     size_t summary = 0;
     if (!measured_open(&m, source, counts)) {
         return;
     }
-    if (measured_space(&m, source->path, s->method, is_auto ? one : s->grid, &size, approximates(s) ? &summary : NULL)) {
+    aset_space_options options = space_options(s, &m.scene);
+    if (options.divisions[0] == 0) {
+        options.divisions[0] = options.divisions[1] = options.divisions[2] = 1;
+    }
+    options.depth = options.depth > 0 ? options.depth : 1;
+    if (measured_space(&m, source->path, s->method, &options, &size, approximates(s) ? &summary : NULL)) {
+        size_t before = m.scene_bytes + scratch_bytes(s), kept = size.total - size.scratch + summary;
         tool_error(source->path, 0, "the picture needs %zu bytes, has %" PRIu64,
-                   m.scene_bytes + scratch_bytes(s) + size.total + summary, s->memory);
+                   before + (kept > size.total ? kept : size.total), s->memory);
     }
     free(m.block);
 }

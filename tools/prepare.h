@@ -13,7 +13,7 @@
 typedef struct settings {
     const aset_method *method;
     uint32_t approx_kinds, approx_depth;
-    uint32_t grid[3];
+    uint32_t grid[3], tree_depth, leaf; /* 0: automatic */
     double curtail;
     bool curtail_more;
     uint64_t memory;
@@ -75,7 +75,7 @@ typedef struct measured {
 
 bool measured_open(measured *m, tool_source *source, const aset_counts *counts);
 /* The space's size and, unless summary_bytes is NULL, the summary's; false after an error line. */
-bool measured_space(measured *m, const char *path, const aset_method *method, const uint32_t grid[3],
+bool measured_space(measured *m, const char *path, const aset_method *method, const aset_space_options *options,
                     aset_space_size *size, size_t *summary_bytes);
 
 /* Loads, builds and sets up everything within settings->memory bytes. False after an error line; then nothing is held. */

@@ -18,10 +18,12 @@ static const char help[] =
     "SCENE is an .nff file, or - for NFF on standard input. Without -o the picture is drawn and thrown away.\n"
     "\n"
     "  -o, --output FILE       .png or .ppm; - for PNG on standard output\n"
-    "  -m, --method NAME       mset, brute; aset stands for mset --approx all --approx-depth 1; default mset\n"
+    "  -m, --method NAME       mset, set, grid, octree, arts, excell, brute; aset: mset --approx all --approx-depth 1; default mset\n"
     "      --approx KINDS      rays that may be approximate: primary,shadow,reflected,refracted, all or none; default none\n"
     "      --approx-depth L    rays of depth L and deeper are (the eye ray has depth 0); default 1\n"
     "      --grid N            divisions on every axis; or NXxNYxNZ, or auto (as many as pay and fit); default auto\n"
+    "      --octree-depth D    octree, arts, excell: halvings of each axis; default 6\n"
+    "      --leaf K            octree, arts, excell: objects in a leaf that is not halved; default 1\n"
     "      --cells flat        what a cell remembers: flat, the paper's average texture\n"
     "      --curtail F         trapped rays: fraction of a voxel's diagonal, 0 for off; default 0.5\n"
     "      --curtail-when W    less or more: which side of it is curtailed; default less\n"
@@ -42,6 +44,8 @@ enum {
     OPTION_APPROX = 256,
     OPTION_APPROX_DEPTH,
     OPTION_GRID,
+    OPTION_OCTREE_DEPTH,
+    OPTION_LEAF,
     OPTION_CELLS,
     OPTION_CURTAIL,
     OPTION_CURTAIL_WHEN,
@@ -64,6 +68,8 @@ static const struct option longs[] = {
     {"approx", required_argument, NULL, OPTION_APPROX},
     {"approx-depth", required_argument, NULL, OPTION_APPROX_DEPTH},
     {"grid", required_argument, NULL, OPTION_GRID},
+    {"octree-depth", required_argument, NULL, OPTION_OCTREE_DEPTH},
+    {"leaf", required_argument, NULL, OPTION_LEAF},
     {"cells", required_argument, NULL, OPTION_CELLS},
     {"curtail", required_argument, NULL, OPTION_CURTAIL},
     {"curtail-when", required_argument, NULL, OPTION_CURTAIL_WHEN},
@@ -97,7 +103,7 @@ static bool parse_method(request *r, const char *text) {
     r->is_aset = strcmp(text, "aset") == 0;
     const aset_method *method = r->is_aset ? &aset_mset : tool_method_find(text);
     if (method == NULL) {
-        tool_error(NULL, 0, "--method: \"%s\" is no method, expected mset, aset or brute", text);
+        tool_error(NULL, 0, "--method: \"%s\" is no method, expected mset, aset, set, grid, octree, arts, excell or brute", text);
         return false;
     }
     r->settings.method = method;
@@ -169,6 +175,9 @@ static bool parse_option(request *r, int option) {
         r->has_approx_depth = true;
         return tool_parse_count("--approx-depth", optarg, 0, ASET_DEPTH_MAX, &s->approx_depth);
     case OPTION_GRID: return tool_parse_grid("--grid", optarg, ASET_DIVISIONS_MAX, s->grid);
+    case OPTION_OCTREE_DEPTH:
+        return tool_parse_count("--octree-depth", optarg, 1, ASET_DEPTH_TREE_MAX, &s->tree_depth);
+    case OPTION_LEAF: return tool_parse_count("--leaf", optarg, 1, UINT32_MAX, &s->leaf);
     case OPTION_MEMORY: return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &s->memory);
     case 's': return tool_parse_size("--size", optarg, &s->width, &s->height);
     case OPTION_SAMPLES: return parse_samples(s, optarg);

@@ -2,8 +2,13 @@
  * space.h - where it is: a space subdivision built over a finished scene.
  *
  * A method is named by its constant, so that a program links only the methods it names:
- *   aset_brute   every object for every ray: the oracle
- *   aset_mset    equally spaced slices with marked cell sides (Logan 1989; Dauenhauer and Semwal 1990)
+ *   aset_brute    every object for every ray: the oracle
+ *   aset_set      slices where the objects' extents are (Semwal 1987)
+ *   aset_mset     equally spaced slices with marked cell sides (Logan 1989; Dauenhauer and Semwal 1990)
+ *   aset_grid     equal voxels (Fujimoto et al. 1986; Amanatides and Woo 1987)
+ *   aset_octree   halving in three axes, next leaf by descent (Glassner 1984)
+ *   aset_arts     the octree with the 3DDA of its finest level (Fujimoto et al. 1986)
+ *   aset_excell   halving in turn, next bucket by a directory (Tamminen 1981)
  */
 #ifndef ASET_SPACE_H
 #define ASET_SPACE_H
@@ -16,20 +21,24 @@ extern "C" {
 
 typedef struct aset_method aset_method;
 
-extern const aset_method aset_brute;
-extern const aset_method aset_mset;
+extern const aset_method aset_brute, aset_set, aset_mset, aset_grid, aset_octree, aset_arts, aset_excell;
 
 /* The word for a method in reports: "mset". */
 const char *aset_method_name(const aset_method *method);
 
 /* All zero is the default: divisions by aset_auto_divisions. */
 typedef struct aset_space_options {
-    uint32_t divisions[3]; /* on x, y, z: 1 to ASET_DIVISIONS_MAX each, or all 0 for automatic */
+    uint32_t divisions[3]; /* MSET, grid: on x, y, z, 1 to ASET_DIVISIONS_MAX each, or all 0 for automatic. SET: the most
+                              voxels on each axis */
+    uint32_t depth; /* octree, ARTS, EXCELL: halvings of each axis at the most, 1 to ASET_DEPTH_TREE_MAX; 0 for 6, or less
+                       where that does not fit */
+    uint32_t leaf;  /* octree, ARTS, EXCELL: objects in a leaf that is not halved any more; 0 means 1 */
     size_t reserve;        /* automatic divisions leave so many bytes of the arena free, for a scratch, say */
     uint32_t textures;     /* and, unless 0, room for a summary of that capacity */
 } aset_space_options;
 
 #define ASET_DIVISIONS_MAX 2048u
+#define ASET_DEPTH_TREE_MAX 10u
 
 /* What was built, counted the same way for every method (house definitions: a leaf is a smallest cell). */
 typedef struct aset_structure {
@@ -37,15 +46,24 @@ typedef struct aset_structure {
     uint64_t leaves;     /* MSET: cell sides, 2 sum of (n_a + 1) n_b n_c; brute force: 1 */
     uint64_t nonempty;   /* leaves that refer to an object */
     uint64_t references; /* objects in leaves, each as often as it stands there */
+    uint64_t merged;     /* SET: extents that got no slice of their own, for there were more than the cap */
 } aset_structure;
 
 /* The bytes of a space, by category, and the counts that they follow from. */
 typedef struct aset_space_size {
-    size_t cells, references, voxels, total;
+    size_t cells, references, voxels;
+    size_t scratch; /* given back when the space is built */
+    size_t total;   /* of all these: the arena's need while building */
     uint32_t divisions[3];
-    uint32_t n_blocks;     /* non-empty blocks of 4 x 4 x 4 voxels, counted for each face of a voxel */
-    uint32_t n_cells;      /* non-empty cells (MSET: cell sides) */
+    uint32_t n_cells;      /* non-empty cells (MSET, SET: cell sides) */
     uint32_t n_references;
+    uint32_t n_blocks;     /* MSET, SET, grid: non-empty blocks of 4 x 4 x 4 voxels, counted for each face of a voxel */
+    uint32_t n_nodes;      /* octree, ARTS: nodes; EXCELL: cells of the directory */
+    uint32_t n_leaves;     /* octree, ARTS, EXCELL: leaves, empty ones included */
+    uint32_t depth, leaf;  /* octree, ARTS, EXCELL: the limits taken */
+    uint64_t listed;       /* octree, ARTS, EXCELL: object numbers listed at once while building */
+    size_t planes;         /* SET: bytes of the table of slices, part of cells */
+    uint32_t caps[3];      /* SET: the most voxels asked for; divisions are those made */
 } aset_space_size;
 
 /* Bits that hold the numbers 0 to n, as a constant expression: 1 to 32. */
@@ -82,6 +100,33 @@ typedef struct aset_space_size {
     ((size_t)(ASET_BYTES_CELLS(nx, ny, nz, 6u, blocks) + ASET_BYTES_REFERENCES(blocks, references, objects) +          \
               ASET_ROUND(ASET_LARGE_MAX * sizeof(aset_large))))
 
+/* SET: the table of slices besides, and while it is built both ends of every object. */
+#define ASET_BYTES_SET(nx, ny, nz, blocks, references, objects)                                                        \
+    (ASET_BYTES_MSET(nx, ny, nz, blocks, references, objects) +                                                        \
+     ASET_ROUND(((size_t)(nx) + (ny) + (nz) + 3u) * sizeof(aset_real)) +                                               \
+     ASET_ROUND(2u * (size_t)(objects) * sizeof(aset_real)))
+
+/* Grid: blocks and references of voxels, and every object's box. */
+#define ASET_BYTES_GRID(nx, ny, nz, blocks, references, objects)                                                       \
+    ((size_t)(ASET_BYTES_CELLS(nx, ny, nz, 1u, blocks) + ASET_BYTES_REFERENCES(blocks, references, objects) +          \
+              ASET_ROUND((uint64_t)(objects) * sizeof(aset_box))))
+
+/* References of the leaves that are not empty, and every object's box. */
+#define ASET_BYTES_LEAVES(leaves, references, objects)                                                                 \
+    ((size_t)(ASET_ROUND(4u * ((uint64_t)(leaves) + 1u)) + ASET_BYTES_PACKED(references, ASET_WIDTH(objects)) +        \
+              ASET_ROUND((uint64_t)(objects) * sizeof(aset_box))))
+
+/* Octree and ARTS: a word for each node; listed: object numbers on lists while it is built. leaves: those not empty. */
+#define ASET_BYTES_OCTREE(nodes, leaves, references, objects, listed)                                                  \
+    (ASET_ROUND(4u * (size_t)(nodes)) + ASET_BYTES_LEAVES(leaves, references, objects) +                               \
+     ASET_ROUND(4u * (size_t)(listed)))
+#define ASET_BYTES_ARTS ASET_BYTES_OCTREE
+
+/* EXCELL: the directory's cells name their bucket; a byte for each bucket's depth. leaves: buckets that are not empty. */
+#define ASET_BYTES_EXCELL(directory, buckets, leaves, references, objects, listed)                                     \
+    ((size_t)ASET_BYTES_PACKED(directory, ASET_WIDTH(buckets)) + ASET_ROUND(buckets) +                                 \
+     ASET_BYTES_LEAVES(leaves, references, objects) + ASET_ROUND(4u * (size_t)(listed)))
+
 /*
  * Bytes of a summary of a space of so many non-empty cells with so many (at least 1) different textures (draft.h): the textures,
  * and for each cell the number of its own.
@@ -95,8 +140,9 @@ typedef struct aset_space_size {
 
 /* --- private fields, public so that you can hold them --- */
 
-/* Slice k of axis a is the plane at low[a] + k width[a]. */
+/* Slice k of axis a is the plane at low[a] + k width[a], or at planes[a][k] if there is a table. */
 typedef struct aset_slices {
+    const aset_real *planes[3];
     aset_real low[3], width[3], per_width[3];
     uint32_t n[3];
 } aset_slices;
@@ -118,6 +164,11 @@ typedef struct aset_references {
     uint32_t n;
 } aset_references;
 
+/* An object's box of voxels, both ends included. */
+typedef struct aset_box {
+    uint16_t low[3], high[3];
+} aset_box;
+
 /* An object whose box is much larger than the others', with its voxels. */
 typedef struct aset_large {
     uint32_t object;
@@ -133,9 +184,15 @@ typedef struct aset_space {
     aset_slices slices;
     aset_cells cells;
     aset_references references;
-    aset_large *large; /* sorted by object */
+    aset_large *large; /* MSET, SET: sorted by object */
     uint32_t n_large;
     uint32_t reach[3]; /* voxels that the largest other box spans */
+    aset_box *boxes;   /* all others: of every object */
+    uint32_t *nodes;   /* octree, ARTS */
+    uint32_t depth;    /* of the tree; EXCELL: halvings of the directory */
+    uint64_t *directory; /* EXCELL: each cell's bucket, packed */
+    unsigned directory_width;
+    uint8_t *bucket_depth;
 } aset_space;
 
 /* --- end of private fields --- */
@@ -148,9 +205,11 @@ typedef struct aset_space {
 void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisions[3]);
 
 /*
- * What aset_space_build will take from the arena for these options, exactly, without taking it. The counts need a bitmap: it
- * stands in the arena's free bytes (nothing is accounted), or in a kilobyte of the stack if arena is NULL; the less there is,
- * the more passes over the objects. ASET_ERR_ARGUMENT: divisions out of range; ASET_ERR_LIMIT: over 2^32 - 2 references.
+ * What aset_space_build will take from the arena for these options, exactly, without taking it. Counting works in the arena's free
+ * bytes (nothing is accounted), or in a kilobyte of the stack if arena is NULL. Brute force, MSET and grid manage with any
+ * scratch; the less there is, the more passes over the objects. The others need what they need while building: too little
+ * of it is ASET_ERR_NOMEM, with arena->missing and size->scratch telling what would be enough for any scene of so many
+ * objects. ASET_ERR_ARGUMENT: divisions, depth or leaf out of range; ASET_ERR_LIMIT: over 2^32 - 2 references.
  */
 aset_status aset_space_measure(aset_space_size *size, const aset_scene *scene, const aset_method *method,
                                const aset_space_options *options, aset_arena *arena);

@@ -121,7 +121,7 @@ static void json_scene(text *t, const aset_report *r) {
 }
 
 static void json_structure(text *t, const aset_space *space) {
-    const aset_structure none = {0, 0, 0, 0};
+    const aset_structure none = {0, 0, 0, 0, 0};
     const aset_structure *s = space != NULL ? &space->structure : &none;
     put(t, ",\"grid\":[");
     for (int a = 0; a < 3; a++) {
@@ -134,6 +134,7 @@ static void json_structure(text *t, const aset_space *space) {
     put_member(t, "empty", s->leaves - s->nonempty);
     put_member(t, "nonempty", s->nonempty);
     put_member(t, "references", s->references);
+    put_member(t, "merged", s->merged);
     put(t, ",\"density\":");
     put_decimal(t, ratio(s->references, s->nonempty), 6);
     put(t, "}");
@@ -240,6 +241,10 @@ static void text_space(text *t, const aset_report *r) {
     put_counted(t, space->structure.leaves, " cells not empty, ");
     put_decimal(t, ratio(space->structure.references, space->structure.nonempty), 2);
     put(t, " objects each\n");
+    if (space->structure.merged > 0) {
+        put_label(t, "merged");
+        put_counted(t, space->structure.merged, " extents of objects share a slice with others\n");
+    }
     put_label(t, "approximate");
     put_kinds(t, kinds_of(r->tracer), "", "nothing");
 #if ASET_WITH_APPROXIMATION

@@ -269,3 +269,12 @@ void cells_build(aset_cells *cells, aset_references *references, const aset_scen
     lay_out(cells, references);
     each_box(&b, scene, slices, place_references);
 }
+
+void cells_each(const aset_references *references, cell_look look, void *context) {
+    uint32_t cell = 0;
+    for (uint32_t at = 0; at < references->n; at++) {
+        uint32_t object = bits_get(references->objects, references->width, at);
+        cell += at > 0 && references_ended(references, at);
+        look(context, cell, &object, 1);
+    }
+}

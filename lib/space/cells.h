@@ -20,8 +20,7 @@
 
 #include "base/bits.h"
 #include "space/slices.h"
-
-#define NO_CELL UINT32_MAX
+#include "space/walk.h"
 
 /* The block of a voxel and face, in the map's order, and the voxel's place in it. */
 static inline uint32_t cells_block(const aset_cells *cells, const int32_t voxel[3], uint32_t face) {
@@ -65,6 +64,9 @@ aset_status cells_measure(const aset_scene *scene, const aset_slices *slices, ui
 /* Makes marks and references of the counts that measure gave, in an arena that holds them. */
 void cells_build(aset_cells *cells, aset_references *references, const aset_scene *scene, const aset_slices *slices,
                  const aset_space_size *size, uint32_t faces, aset_arena *arena);
+
+/* Looks at every cell, in dense order: for aset_method.each_cell. */
+void cells_each(const aset_references *references, cell_look look, void *context);
 
 /* Where the references of the cell at place in non-empty block number rank begin. */
 static inline uint32_t references_begin(const aset_references *references, uint32_t rank, uint64_t marks,

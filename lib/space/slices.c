@@ -19,14 +19,32 @@ void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t di
     const aset_real lows[3] = {low.x, low.y, low.z}, highs[3] = {high.x, high.y, high.z};
     for (int a = 0; a < 3; a++) {
         slices->n[a] = divisions[a];
+        slices->planes[a] = NULL;
         slices->low[a] = lows[a] - BEYOND_LOW * margin;
         slices->width[a] = (highs[a] + BEYOND_HIGH * margin - slices->low[a]) / (aset_real)divisions[a];
         slices->per_width[a] = 1 / slices->width[a];
     }
 }
 
+/* The same in a table of slices, by halving it. */
+static int32_t locate_in_table(const aset_real *planes, int32_t last, aset_real x) {
+    int32_t low = 0, high = last;
+    while (low < high) {
+        int32_t middle = low + (high - low + 1) / 2;
+        if (planes[middle] <= x) {
+            low = middle;
+        } else {
+            high = middle - 1;
+        }
+    }
+    return low;
+}
+
 int32_t slices_locate(const aset_slices *slices, int a, aset_real x) {
     int32_t last = (int32_t)slices->n[a] - 1;
+    if (slices->planes[a] != NULL) {
+        return locate_in_table(slices->planes[a], last, x);
+    }
     aset_real guess = (x - slices->low[a]) * slices->per_width[a];
     int32_t k = !(guess > 0) ? 0 : guess >= (aset_real)last ? last : (int32_t)guess;
     while (k > 0 && slices_plane(slices, a, k) > x) {
@@ -41,11 +59,14 @@ int32_t slices_locate(const aset_slices *slices, int a, aset_real x) {
 voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object) {
     aset_vec3 low, high;
     aset_object_bounds(scene, object, &low, &high);
-    aset_real margin = 2 * scene->margin;
     voxel_box box;
     for (int a = 0; a < 3; a++) {
-        box.low[a] = slices_locate(slices, a, vec_at(&low, a) - margin);
-        box.high[a] = slices_locate(slices, a, vec_at(&high, a) + margin);
+        aset_real end = slices_grown_high(scene, vec_at(&high, a));
+        box.low[a] = slices_locate(slices, a, slices_grown_low(scene, vec_at(&low, a)));
+        box.high[a] = slices_locate(slices, a, end);
+        if (box.high[a] > box.low[a] && slices_plane(slices, a, box.high[a]) == end) {
+            box.high[a]--; /* a slice at the very end of the box (SET) closes it: what is hit lies a margin before it */
+        }
     }
     return box;
 }

@@ -29,7 +29,24 @@ void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t di
 /* The voxels that an object's grown box touches: its expanded box in the paper's words. */
 voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object);
 
+/* The ends of an object's box as the spaces see it: grown by twice the scene's margin. */
+static inline aset_real slices_grown_low(const aset_scene *scene, aset_real low) {
+    return low - 2 * scene->margin;
+}
+
+static inline aset_real slices_grown_high(const aset_scene *scene, aset_real high) {
+    return high + 2 * scene->margin;
+}
+
+static inline voxel_box slices_whole(const aset_slices *slices) {
+    voxel_box whole = {{0, 0, 0}, {(int32_t)slices->n[0] - 1, (int32_t)slices->n[1] - 1, (int32_t)slices->n[2] - 1}};
+    return whole;
+}
+
 static inline aset_real slices_plane(const aset_slices *slices, int a, int32_t k) {
+    if (slices->planes[a] != NULL) { /* SET */
+        return slices->planes[a][k];
+    }
     return slices->low[a] + (aset_real)k * slices->width[a];
 }
 

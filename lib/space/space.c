@@ -8,6 +8,7 @@
 #define AUTO_DIVISIONS 4
 #define AUTO_DIVISIONS_MAX 128
 #define AUTO_THIN R(0.001)
+#define AUTO_DEPTH 6
 #define STACK_SCRATCH_WORDS 128 /* a kilobyte */
 
 const char *aset_method_name(const aset_method *method) {
@@ -37,16 +38,20 @@ void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisi
     }
 }
 
-/* The options' divisions, checked; automatic ones are filled in. */
-static aset_status choose_divisions(aset_space_size *size, const aset_scene *scene, const aset_space_options *options,
-                                    const aset_arena *arena, bool *is_auto) {
+/* The options, checked; automatic ones are filled in. */
+static aset_status choose_size(aset_space_size *size, const aset_scene *scene, const aset_method *method,
+                               const aset_space_options *options, const aset_arena *arena, bool *is_auto) {
     const uint32_t *n = size->divisions;
     memset(size, 0, sizeof *size);
     if (options != NULL) {
         memcpy(size->divisions, options->divisions, sizeof size->divisions);
+        size->depth = options->depth;
+        size->leaf = options->leaf;
     }
-    *is_auto = n[0] == 0 && n[1] == 0 && n[2] == 0;
-    if (*is_auto) {
+    *is_auto = method->by_depth ? size->depth == 0 : n[0] == 0 && n[1] == 0 && n[2] == 0;
+    size->depth = size->depth > 0 ? size->depth : AUTO_DEPTH;
+    size->leaf = size->leaf > 0 ? size->leaf : 1;
+    if (n[0] == 0 && n[1] == 0 && n[2] == 0) {
         aset_auto_divisions(scene, arena != NULL ? arena->size - arena->used : 0, size->divisions);
     }
     for (int a = 0; a < 3; a++) {
@@ -54,7 +59,7 @@ static aset_status choose_divisions(aset_space_size *size, const aset_scene *sce
             return ASET_ERR_ARGUMENT;
         }
     }
-    return ASET_OK;
+    return size->depth <= ASET_DEPTH_TREE_MAX ? ASET_OK : ASET_ERR_ARGUMENT;
 }
 
 /* One measurement, with the arena's free bytes as scratch if they are worth more than the stack's kilobyte. */
@@ -66,7 +71,10 @@ static aset_status measure_with(aset_space_size *size, const aset_scene *scene, 
         left > sizeof words
             ? method->measure(size, scene, (uint64_t *)(void *)(arena->block + arena->used), left)
             : method->measure(size, scene, words, sizeof words);
-    size->total = size->cells + size->references + size->voxels;
+    size->total = size->cells + size->references + size->voxels + size->scratch;
+    if (status == ASET_ERR_NOMEM && arena != NULL) {
+        arena->missing = size->scratch > left ? size->scratch - left : 8;
+    }
     return status;
 }
 
@@ -76,7 +84,7 @@ aset_status aset_space_measure(aset_space_size *size, const aset_scene *scene, c
     if (size == NULL || scene == NULL || method == NULL) {
         return ASET_ERR_ARGUMENT;
     }
-    aset_status status = choose_divisions(size, scene, options, arena, &is_auto);
+    aset_status status = choose_size(size, scene, method, options, arena, &is_auto);
     return status == ASET_OK ? measure_with(size, scene, method, arena) : status;
 }
 
@@ -88,18 +96,36 @@ static size_t reserved(const aset_space_size *size, const aset_space_options *op
     return options->reserve + (options->textures > 0 ? ASET_BYTES_SUMMARY(size->n_cells, options->textures) : 0);
 }
 
-/* Makes automatic divisions smaller until everything fits. */
-static aset_status shrink_to_fit(aset_space_size *size, const aset_scene *scene, const aset_method *method,
-                                 const aset_space_options *options, aset_arena *arena) {
+/* One step coarser. False: nothing is coarser. */
+static bool shrink(aset_space_size *size, const aset_method *method) {
     uint32_t *n = size->divisions;
-    aset_status status = ASET_OK;
-    while (status == ASET_OK && !aset_arena_fits(arena, size->total + reserved(size, options))) {
-        if (n[0] == 1 && n[1] == 1 && n[2] == 1) {
-            break; /* nothing is smaller; a summary may still need less than was reserved for it */
+    if (method->by_depth) {
+        size->depth--;
+        return size->depth > 0;
+    }
+    if (size->caps[0] > 0) {
+        memcpy(n, size->caps, sizeof size->caps); /* SET: what was asked for, not what was made of it */
+    }
+    if (n[0] == 1 && n[1] == 1 && n[2] == 1) {
+        return false;
+    }
+    for (int a = 0; a < 3; a++) {
+        n[a] = n[a] > 1 ? n[a] - (n[a] + 7) / 8 : 1;
+    }
+    return true;
+}
+
+/* Measures; automatic sizes are made smaller until everything fits. */
+static aset_status measure_to_fit(aset_space_size *size, const aset_scene *scene, const aset_method *method,
+                                  const aset_space_options *options, aset_arena *arena, bool is_auto) {
+    aset_status status = measure_with(size, scene, method, arena);
+    while (is_auto && (status == ASET_ERR_NOMEM ||
+                       (status == ASET_OK && !aset_arena_fits(arena, size->total + reserved(size, options))))) {
+        aset_space_size smaller = *size;
+        if (!shrink(&smaller, method)) {
+            break; /* a summary may still need less than was reserved for it */
         }
-        for (int a = 0; a < 3; a++) {
-            n[a] = n[a] > 1 ? n[a] - (n[a] + 7) / 8 : 1;
-        }
+        *size = smaller;
         status = measure_with(size, scene, method, arena);
     }
     return status;
@@ -112,12 +138,9 @@ aset_status aset_space_build(aset_space *space, const aset_scene *scene, const a
     if (space == NULL || scene == NULL || method == NULL || arena == NULL) {
         return ASET_ERR_ARGUMENT;
     }
-    aset_status status = choose_divisions(&size, scene, options, arena, &is_auto);
+    aset_status status = choose_size(&size, scene, method, options, arena, &is_auto);
     if (status == ASET_OK) {
-        status = measure_with(&size, scene, method, arena);
-    }
-    if (status == ASET_OK && is_auto) {
-        status = shrink_to_fit(&size, scene, method, options, arena);
+        status = measure_to_fit(&size, scene, method, options, arena, is_auto);
     }
     if (status == ASET_OK && !aset_arena_fits(arena, size.total)) {
         status = ASET_ERR_NOMEM;

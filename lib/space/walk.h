@@ -15,6 +15,8 @@
 /* Objects handed to the visitor at once; a cell with more comes in several visits. */
 #define WALK_BATCH 16
 
+#define NO_CELL UINT32_MAX
+
 /* The face of objects that are met before any cell: the origin lies in their boxes. Never in an approximate walk. */
 #define FACE_NONE (-1)
 
@@ -38,7 +40,11 @@ typedef void (*cell_look)(void *context, uint32_t cell, const uint32_t *objects,
 
 struct aset_method {
     const char *name;
-    /* size->divisions are given; fills the rest. scratch as in aset_space_measure, never NULL */
+    bool by_depth; /* sized by depth and leaf (trees), not by divisions */
+    /*
+     * size->divisions or depth and leaf are given; fills the rest. scratch as in aset_space_measure, never NULL. ASET_ERR_NOMEM:
+     * the scratch is too small; size->scratch bytes would do.
+     */
     aset_status (*measure)(aset_space_size *size, const aset_scene *scene, uint64_t *scratch, size_t scratch_bytes);
     /* the arena holds size->total bytes; scene, method and divisions are set in space */
     void (*build)(aset_space *space, const aset_space_size *size, aset_arena *arena);

@@ -1,0 +1,276 @@
+/*
+ * sides.c - marked cell sides: what MSET and SET share. They differ in where the slices are, and in nothing else.
+ *
+ * An object is written into the up sides that the low face of its expanded box covers and the down sides that the high face
+ * covers:
+ *
+ *        slice k            slice m
+ *           |   expanded box   |           A ray from outside enters the box once, through one of these sides, and so meets
+ *     up -> |==================| <- down   the object exactly once: no object is tested twice for one ray. The hit may
+ *           |     (object)     |           lie beyond the next slices, so the walk goes on until the next cell begins
+ *           |                  |           behind the nearest hit.
+ *
+ * An up side of slice k is the way into voxel k, a down side of slice k the way into voxel k - 1: a side is kept as (voxel,
+ * face of entry). The up sides of the last slice and the down sides of the first are never marked.
+ *
+ * Rays that start inside: an object whose box holds the origin's voxel is never entered from there. Instead of lists for every
+ * voxel (bytes in proportion to the objects' volumes) the ray's line is walked from a little before its origin: boxes span at
+ * most reach voxels, so a box that holds the origin's voxel lies in the window of reach - 1 voxels around it, and the
+ * line enters it there, before t = 0. The few boxes that are much larger than the others would make that window the
+ * whole scene; these, at most ASET_LARGE_MAX, are kept in a list with their voxels, tested first if they hold the
+ * origin's voxel, and passed over when the backward part of the walk meets them.
+ */
+#include "space/sides.h"
+
+#include "space/bricks.h"
+
+#include <string.h>
+
+#define FACES 6u
+
+aset_status sides_measure(aset_space_size *size, const aset_scene *scene, const aset_slices *slices, uint64_t *scratch,
+                          size_t scratch_bytes) {
+    size->voxels = ASET_ROUND(ASET_LARGE_MAX * sizeof(aset_large));
+    return cells_measure(scene, slices, FACES, scratch, scratch_bytes, size);
+}
+
+/* The voxels that a box spans along its longest axis. */
+static uint32_t box_span(const voxel_box *box) {
+    uint32_t span = 0;
+    for (int a = 0; a < 3; a++) {
+        uint32_t n = (uint32_t)(box->high[a] - box->low[a] + 1);
+        span = n > span ? n : span;
+    }
+    return span;
+}
+
+/* Among the kept ones, the one with the smallest span. */
+static uint32_t smallest_of(const uint32_t *spans, uint32_t n) {
+    uint32_t least = 0;
+    for (uint32_t i = 1; i < n; i++) {
+        least = spans[i] < spans[least] ? i : least;
+    }
+    return least;
+}
+
+/*
+ * Finds the largest boxes and the reach of the rest. A box that is no larger than that reach would gain nothing by being listed,
+ * and is dropped again.
+ */
+static void find_large(aset_space *space) {
+    uint32_t spans[ASET_LARGE_MAX], objects[ASET_LARGE_MAX], n = 0, rest = 1;
+    for (uint32_t i = 0; i < space->scene->counts.objects; i++) {
+        voxel_box box = slices_object_box(&space->slices, space->scene, i);
+        uint32_t span = box_span(&box), at = n;
+        if (n == ASET_LARGE_MAX) {
+            at = smallest_of(spans, n);
+            uint32_t leaves = span > spans[at] ? spans[at] : span;
+            rest = leaves > rest ? leaves : rest;
+            if (span <= spans[at]) {
+                continue;
+            }
+            for (; at + 1 < n; at++) { /* keeps the list sorted by object */
+                spans[at] = spans[at + 1];
+                objects[at] = objects[at + 1];
+            }
+        } else {
+            n++;
+        }
+        spans[at] = span;
+        objects[at] = i;
+    }
+    rest = rest < 2 ? 2 : rest;
+    for (uint32_t i = 0; i < n; i++) {
+        if (spans[i] > rest) {
+            voxel_box box = slices_object_box(&space->slices, space->scene, objects[i]);
+            aset_large *large = space->large + space->n_large++;
+            large->object = objects[i];
+            for (int a = 0; a < 3; a++) {
+                large->low[a] = (uint16_t)box.low[a];
+                large->high[a] = (uint16_t)box.high[a];
+            }
+        }
+    }
+    space->reach[0] = space->reach[1] = space->reach[2] = rest;
+}
+
+void sides_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
+    const uint32_t *n = size->divisions;
+    cells_build(&space->cells, &space->references, space->scene, &space->slices, size, FACES, arena);
+    space->large = aset_arena_alloc(arena, size->voxels, ASET_CATEGORY_VOXELS);
+    find_large(space);
+    space->structure.leaves = 2 * ((uint64_t)(n[0] + 1) * n[1] * n[2] + (uint64_t)(n[1] + 1) * n[0] * n[2] +
+                                   (uint64_t)(n[2] + 1) * n[0] * n[1]);
+    space->structure.nonempty = space->cells.n_cells;
+    space->structure.references = space->references.n;
+}
+
+static bool large_holds(const aset_large *large, const int32_t voxel[3]) {
+    for (int a = 0; a < 3; a++) {
+        if (voxel[a] < large->low[a] || voxel[a] > large->high[a]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Visits the large objects whose boxes hold the origin's voxel; held keeps a bit for each. The new limit. */
+static aset_real visit_large(const aset_space *space, const int32_t voxel[3], walk_request *walk, uint32_t *held) {
+    walk_cell cell = {NO_CELL, FACE_NONE, 0, 0, {0}};
+    for (uint32_t i = 0; i < space->n_large; i++) {
+        if (large_holds(space->large + i, voxel)) {
+            *held |= UINT32_C(1) << i;
+            cell.objects[cell.n++] = space->large[i].object;
+        }
+    }
+    return cell.n > 0 ? walk->visit(walk, &cell) : walk->limit;
+}
+
+/* Was this object visited by visit_large? */
+static bool was_held(const aset_space *space, uint32_t object, uint32_t held) {
+    for (uint32_t i = 0; held >> i != 0; i++) {
+        if ((held >> i & 1) != 0 && space->large[i].object == object) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The references of a cell, in batches; in the backward part (held) without those already visited. The new limit. */
+static aset_real visit_cell(const aset_space *space, walk_request *walk, walk_cell *cell, uint32_t begin, uint32_t held) {
+    const aset_references *refs = &space->references;
+    aset_real limit = walk->limit;
+    uint32_t at = begin;
+    bool more = true;
+    while (more) {
+        cell->n = 0;
+        do {
+            uint32_t object = bits_get(refs->objects, refs->width, at++);
+            more = !references_ended(refs, at);
+            if (held == 0 || !was_held(space, object, held)) {
+                cell->objects[cell->n++] = object;
+            }
+        } while (more && cell->n < WALK_BATCH);
+        if (cell->n > 0) {
+            limit = walk->visit(walk, cell);
+        }
+    }
+    return limit;
+}
+
+/* Where an exact walk from inside begins: at the edge of the window around the origin's voxel. */
+static voxel_box window_around(const aset_space *space, const int32_t voxel[3]) {
+    voxel_box window;
+    for (int a = 0; a < 3; a++) {
+        int32_t reach = (int32_t)space->reach[a] - 1, last = (int32_t)space->slices.n[a] - 1;
+        window.low[a] = voxel[a] > reach ? voxel[a] - reach : 0;
+        window.high[a] = last - voxel[a] > reach ? voxel[a] + reach : last;
+    }
+    return window;
+}
+
+/* Puts the walk at its first cell. False: there is none. */
+static bool sides_begin(const aset_space *space, const probe *ray, walk_request *walk, dda *way, uint32_t *held) {
+    voxel_box window = slices_whole(&space->slices);
+    if (dda_inside(way, &space->slices, ray)) {
+        if (!walk->wants_references) {
+            return dda_step(way, &space->slices, ray);
+        }
+        walk->limit = visit_large(space, way->voxel, walk, held);
+        window = window_around(space, way->voxel);
+    }
+    return dda_enter(way, &space->slices, ray, &window);
+}
+
+/* The marks of one brick on the three faces that a ray can enter by, and where their references and dense numbers are. */
+typedef struct brick {
+    uint64_t marks[3]; /* by axis; 0 where the block is empty */
+    uint32_t rank[3];
+} brick;
+
+/* The map's bits of all six faces of a brick, whose first block is given. */
+static inline unsigned brick_map(const aset_cells *cells, uint32_t first) {
+    uint32_t shift = first & 63;
+    uint64_t bits = cells->map[first >> 6] >> shift;
+    if (shift > 64 - FACES) {
+        bits |= cells->map[(first >> 6) + 1] << (64 - shift);
+    }
+    return (unsigned)bits & 63;
+}
+
+static void brick_load(brick *b, const aset_cells *cells, uint32_t block, const uint32_t faces[3]) {
+    for (int a = 0; a < 3; a++) {
+        uint32_t rank = cells_rank(cells, block + faces[a]);
+        b->rank[a] = rank;
+        b->marks[a] = rank != NO_CELL ? cells->marks[rank] : 0;
+    }
+}
+
+/* A marked cell side: its references or its number go to the visitor. The new limit. */
+static aset_real visit_side(const aset_space *space, walk_request *walk, const dda *way, const brick *b, uint32_t face,
+                            uint32_t held) {
+    unsigned place = cells_place(way->voxel);
+    uint64_t marks = b->marks[way->axis];
+    uint32_t rank = b->rank[way->axis];
+    walk_cell cell;
+    cell.index = space->cells.first[rank] + bits_count(marks & ((UINT64_C(1) << place) - 1));
+    cell.face = (int)face;
+    cell.t = way->t;
+    cell.n = 0;
+    if (walk->wants_references) {
+        uint32_t begin = references_begin(&space->references, rank, marks, place);
+        return visit_cell(space, walk, &cell, begin, way->t > 0 ? 0 : held);
+    }
+    return way->t > 0 ? walk->visit(walk, &cell) : walk->limit;
+}
+
+/*
+ * The walk. It goes from brick to brick of 4 x 4 x 4 voxels. A brick without a mark on the three faces that this ray can enter by
+ * costs one crossing and one look at the map; only in the others are voxels stepped through, each with one crossing and the
+ * test of one bit of the marks at hand. Both levels cross slices in the same order, so this is the plain walk voxel by
+ * voxel, with the empty part left out (tests/test_space.c walks the plain way beside it).
+ */
+void sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
+    const aset_cells *cells = &space->cells;
+    const aset_slices *slices = &space->slices;
+    const uint32_t faces[3] = {ray->direction[0] < 0, 2 + (ray->direction[1] < 0), 4 + (ray->direction[2] < 0)};
+    const unsigned mask = 1u << faces[0] | 1u << faces[1] | 1u << faces[2];
+    uint32_t held = 0;
+    brick_walk bricks;
+    dda way;
+    if (cells->n_cells == 0 || !sides_begin(space, ray, walk, &way, &held) || way.t > walk->limit) {
+        return;
+    }
+    brick_begin(&bricks, cells, slices, ray, &way);
+    bool inside = true, known = true; /* known: way stands where the ray enters the brick */
+    uint64_t n_cells = 1;
+    while (inside && way.t <= walk->limit) {
+        if ((brick_map(cells, bricks.block) & mask) == 0) {
+            inside = brick_step(&bricks, slices, ray, &way);
+            known = false;
+            continue;
+        }
+        n_cells += known ? 0 : brick_land(&bricks, slices, ray, &way);
+        known = true;
+        brick b;
+        bool left;
+        brick_load(&b, cells, bricks.block, faces);
+        do {
+            if ((b.marks[way.axis] >> cells_place(way.voxel) & 1) != 0) {
+                walk->nonempty++;
+                walk->limit = visit_side(space, walk, &way, &b, faces[way.axis], held);
+            }
+            inside = dda_step(&way, slices, ray);
+            n_cells += inside && way.t <= walk->limit;
+            left = brick_left(&way);
+        } while (inside && !left && way.t <= walk->limit);
+        if (inside && left) {
+            inside = brick_cross(&bricks, slices, ray, &way, way.axis);
+        }
+    }
+    walk->cells += n_cells + (known ? 0 : brick_count_rest(slices, ray, &way, inside, walk->limit));
+}
+
+void sides_each(const aset_space *space, cell_look look, void *context) {
+    cells_each(&space->references, look, context);
+}
