@@ -304,7 +304,7 @@ static void example_model(model *m) {
 
 /* As sizes of static arrays: if one of them were no constant expression, this would not compile. */
 static ASET_ARENA_BLOCK(example_block, EXAMPLE_SCENE + EXAMPLE_SPACE + EXAMPLE_SUMMARY + EXAMPLE_SCRATCH);
-static unsigned char one_by_one[ASET_BYTES_SCENE(7, 100, 3, 2)][ASET_BYTES_SCRATCH(1)];
+typedef unsigned char one_by_one[ASET_BYTES_SCENE(7, 100, 3, 2)][ASET_BYTES_SCRATCH(1)];
 enum { BRUTE_AS_CONSTANT = (int)ASET_BYTES_BRUTE, WIDTH_AS_CONSTANT = (int)ASET_WIDTH(1000u) };
 
 static aset_status build_example(aset_arena *arena, size_t used[4]) {
@@ -350,7 +350,7 @@ static void test_memory__macros_are_exact_constants(void **state) {
     assert_int_equal(aset_arena_init(&arena, example_block, sizeof example_block - 8), ASET_OK);
     assert_int_equal(build_example(&arena, used), ASET_ERR_NOMEM);
     assert_int_equal(arena.missing, 8);
-    assert_int_equal(sizeof one_by_one, ASET_BYTES_SCENE(7, 100, 3, 2) * ASET_BYTES_SCRATCH(1));
+    assert_int_equal(sizeof(one_by_one), ASET_BYTES_SCENE(7, 100, 3, 2) * ASET_BYTES_SCRATCH(1));
     assert_int_equal(BRUTE_AS_CONSTANT, 0);
     assert_int_equal(WIDTH_AS_CONSTANT, 10);
 }

@@ -1032,7 +1032,10 @@ static void test_scene__cone_along_an_axis_has_no_slack(void **state) {
 
 #if ASET_WITH_POLYGONS
 static aset_vec3 whole_point(random_state *r) {
-    aset_vec3 v = {(aset_real)random_below(r, 17) - 8, (aset_real)random_below(r, 17) - 8, (aset_real)random_below(r, 17) - 8};
+    aset_vec3 v;
+    v.x = (aset_real)random_below(r, 17) - 8;
+    v.y = (aset_real)random_below(r, 17) - 8;
+    v.z = (aset_real)random_below(r, 17) - 8;
     return v;
 }
 

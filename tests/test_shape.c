@@ -576,7 +576,7 @@ static void test_shape__closed_triangles_do_not_leak_in_a_space(void **state) {
     stage_space(&s, &space, &aset_mset, 9, 10, 11);
     aset_tracer tracer = stage_tracer(&s, &space);
     for (int i = 0; i < 50000; i++) {
-        aset_ray ray = {random_in_cube(&r, 0.5), random_direction(&r), REAL_INFINITY};
+        aset_ray ray = random_ray_from(&r, 0.5);
         aset_hit hit;
         bool closest, any;
         assert_int_equal(aset_closest_hit(&closest, &hit, &tracer, &ray, false, NULL), ASET_OK);

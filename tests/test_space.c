@@ -162,7 +162,8 @@ static aset_ray random_ray(random_state *r, const aset_scene *scene, const aset_
     case FROM_SURFACE: put_on_surface(&ray, r, scene); break;
     case FROM_FAR: {
         double distance = size_of(scene) * pow(10, random_between(r, 0.5, 7));
-        ray.origin = dvec_real(dvec_along(random_in_scene(r, scene, 0), distance, dvec_of(random_direction(r))));
+        dvec near = random_in_scene(r, scene, 0);
+        ray.origin = dvec_real(dvec_along(near, distance, dvec_of(random_direction(r))));
         aim(&ray, r, scene);
         break;
     }
@@ -548,7 +549,7 @@ static void test_space__one_object_a_million_times_larger(void **state) {
         aset_tracer a = stage_tracer(&s, &brute), b = stage_tracer(&s, &space);
         uint32_t hits = 0;
         for (int i = 0; i < 500; i++) {
-            aset_ray ray = {random_in_cube(&r, 10), random_direction(&r), REAL_INFINITY};
+            aset_ray ray = random_ray_from(&r, 10);
             aset_hit expected, hit;
             bool expected_found, found;
             ray.origin.z += 10;
@@ -583,7 +584,7 @@ static void test_space__scene_without_objects(void **state) {
         assert_int_equal(space.structure.references, 0);
         aset_tracer tracer = stage_tracer(&s, &space);
         for (int k = 0; k < 100; k++) {
-            aset_ray ray = {random_in_cube(&r, 2), random_direction(&r), REAL_INFINITY};
+            aset_ray ray = random_ray_from(&r, 2);
             aset_hit hit;
             bool found = true;
             assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, false, NULL), ASET_OK);

@@ -4,6 +4,8 @@
  */
 #include "support/support.h"
 
+#include "space/slices.h"
+
 #define ROOM ((size_t)3 << 20)
 #define PI 3.14159265358979323846
 enum { SCRATCH_DEPTH = 24 };
@@ -61,8 +63,6 @@ static void check_colour(dvec c, double r, double g, double b, double tolerance,
 }
 
 /* --- the functions that stand for libm's --- */
-
-#include "base/real.h"
 
 static void test_trace__power_and_tangent(void **state) {
     (void)state;
@@ -147,7 +147,8 @@ static void test_trace__diffuse_and_highlight(void **state) {
     uint32_t lit = 0, bright = 0;
     for (int i = 0; i < 400; i++) {
         studio st;
-        dvec light = scaled(random_between(&r, 1.5, 20), dvec_of(random_direction(&r)));
+        double away = random_between(&r, 1.5, 20);
+        dvec light = scaled(away, dvec_of(random_direction(&r)));
         aset_vec3 position = dvec_real(light);
         ball_studio(&st, &position, 1);
         dvec from = scaled(4, dvec_of(random_direction(&r))), view = dvec_unit(scaled(-1, from));
@@ -296,6 +297,11 @@ static aset_material painted(double r, double g, double b) {
     return m;
 }
 
+static dvec random_downwards(random_state *r) {
+    double x = random_between(r, -1, 1), y = random_between(r, -1, 1);
+    return dvec_unit(dvec_make(x, y, -1));
+}
+
 static void test_trace__reflection_off_a_mirror(void **state) {
     (void)state;
     random_state r = random_start(seed_of(20));
@@ -303,7 +309,7 @@ static void test_trace__reflection_off_a_mirror(void **state) {
     mirror.specular = R(0.75);
     for (int i = 0; i < 50; i++) {
         studio st;
-        dvec down = dvec_unit(dvec_make(random_between(&r, -1, 1), random_between(&r, -1, 1), -1));
+        dvec down = random_downwards(&r);
         dvec up = dvec_make(down.x, down.y, -down.z);
         memset(&st, 0, sizeof st);
         model_start(&st.m);
@@ -392,7 +398,7 @@ static void test_trace__refraction_through_a_slab(void **state) {
     random_state r = random_start(seed_of(30));
     for (int i = 0; i < 60; i++) {
         double index = i % 3 == 0 ? 0 : random_between(&r, 1.1, 2.4), ratio = index > 0 ? 1 / index : 1;
-        dvec down = dvec_unit(dvec_make(random_between(&r, -1, 1), random_between(&r, -1, 1), -1)), inside;
+        dvec down = random_downwards(&r), inside;
         assert_true(snell(down, dvec_make(0, 0, 1), ratio, &inside));
         dvec exit = dvec_along(dvec_make(0, 0, 1), -1 / inside.z, inside);
         studio st;
@@ -482,7 +488,7 @@ static void test_trace__total_internal_reflection(void **state) {
 static void random_studio(studio *st, uint64_t seed, uint32_t n_things, const aset_method *method, uint32_t n) {
     random_state r = random_start(seed);
     memset(st, 0, sizeof *st);
-    model_random(&st->m, &r, n_things, 5, 0.5, 3);
+    model_random(&st->m, &r, n_things, 4, 1, 5);
     studio_open(st, method, n);
 }
 
@@ -493,7 +499,7 @@ static void test_trace__t_counts_in_lengths_of_the_direction(void **state) {
     random_state r = random_start(seed_of(41));
     uint32_t hits = 0;
     for (int i = 0; i < 500; i++) {
-        aset_ray ray = {random_in_cube(&r, 8), random_direction(&r), REAL_INFINITY};
+        aset_ray ray = random_ray_from(&r, 8);
         aset_hit hit, other;
         bool found, again;
         assert_int_equal(aset_closest_hit(&found, &hit, &st.tracer, &ray, false, NULL), ASET_OK);
@@ -580,7 +586,7 @@ static bool side_at(const studio *st, const aset_ray *ray, int a, int32_t k, dou
     const double d[3] = {(double)ray->direction.x, (double)ray->direction.y, (double)ray->direction.z};
     const aset_slices *slices = &st->space.slices;
     int32_t voxel[3];
-    *t = ((double)slices->low[a] + (double)k * (double)slices->width[a] - o[a]) / d[a];
+    *t = ((double)slices_plane(slices, a, k) - o[a]) / d[a];
     *undecided = false;
     for (int b = 0; b < 3; b++) {
         double at = (o[b] + *t * d[b] - (double)slices->low[b]) / (double)slices->width[b];
@@ -658,7 +664,7 @@ static void test_trace__approximate_rays_stop_at_the_first_marked_side(void **st
         random_studio(&st, seed_of(60 + i), 4 + 4 * (uint32_t)i, &aset_mset, 9);
         random_state r = random_start(seed_of(70 + i));
         for (int k = 0; k < 1000; k++) {
-            aset_ray ray = {random_in_cube(&r, k % 2 == 0 ? 5 : 14), random_direction(&r), REAL_INFINITY};
+            aset_ray ray = random_ray_from(&r, k % 2 == 0 ? 5 : 14);
             if (k % 2 == 1) {
                 ray.direction = dvec_real(dvec_unit(dvec_sub(dvec_of(random_in_cube(&r, 5)), dvec_of(ray.origin))));
             }
@@ -760,7 +766,7 @@ static void test_trace__curtailed_rays(void **state) {
     double diagonal = voxel_diagonal(&st);
     uint32_t n[2] = {0, 0};
     for (int i = 0; i < 1500; i++) {
-        aset_ray ray = {random_in_cube(&r, 6), random_direction(&r), REAL_INFINITY};
+        aset_ray ray = random_ray_from(&r, 6);
         aset_hit hit;
         bool found, still, any;
         double share = random_between(&r, 0.05, 1.5);
@@ -908,9 +914,10 @@ static uint32_t differing(studio *st, const aset_view *view, const aset_picture 
 static aset_view random_view(random_state *r, bool orthographic) {
     aset_view view;
     memset(&view, 0, sizeof view);
-    view.from = dvec_real(scaled(random_between(r, 9, 15), dvec_of(random_direction(r))));
+    double away = random_between(r, 9, 15), length = random_between(r, 0.1, 10);
+    view.from = dvec_real(scaled(away, dvec_of(random_direction(r))));
     view.at = random_in_cube(r, 2);
-    view.up = dvec_real(scaled(random_between(r, 0.1, 10), dvec_of(random_direction(r))));
+    view.up = dvec_real(scaled(length, dvec_of(random_direction(r))));
     view.angle_deg = (aset_real)random_between(r, 20, 90);
     view.height = orthographic ? (aset_real)random_between(r, 4, 12) : 0;
     return view;

@@ -85,6 +85,12 @@ static bool choose_view(prepared *p, const settings *s) {
     }
     view->width_px = s->width > 0 ? s->width : view->width_px > 0 ? view->width_px : 512;
     view->height_px = s->height > 0 ? s->height : view->height_px > 0 ? view->height_px : 512;
+    aset_counter ignored;
+    aset_sink check = aset_counter_sink(&ignored);
+    if (check.view(check.context, view) != ASET_OK) {
+        tool_error(p->path, 0, "the view has no direction, or up lies along it; expected other --from, --at or --up");
+        return false;
+    }
     return true;
 }
 

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define THREADS_MAX 256u
+#define SIDE_MAX 65535u
 
 static const char help[] =
     "aset render SCENE [-o OUT.png]: draws a scene exactly or approximately, in a fixed block of memory.\n"
@@ -139,6 +140,14 @@ static bool parse_samples(settings *s, const char *text) {
     return true;
 }
 
+static bool check_side(const settings *s) {
+    if (s->width > SIDE_MAX || s->height > SIDE_MAX) {
+        tool_error(NULL, 0, "--size: %" PRIu32 "x%" PRIu32 " is too large, expected at most %u on a side", s->width, s->height, SIDE_MAX);
+        return false;
+    }
+    return true;
+}
+
 static bool parse_more(request *r, int option) {
     static const tool_word cells[] = {{"flat", 0}, {NULL, 0}}, rules[] = {{"spd", 1}, {NULL, 0}},
                            sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}};
@@ -179,7 +188,7 @@ static bool parse_option(request *r, int option) {
         return tool_parse_count("--octree-depth", optarg, 1, ASET_DEPTH_TREE_MAX, &s->tree_depth);
     case OPTION_LEAF: return tool_parse_count("--leaf", optarg, 1, UINT32_MAX, &s->leaf);
     case OPTION_MEMORY: return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &s->memory);
-    case 's': return tool_parse_size("--size", optarg, &s->width, &s->height);
+    case 's': return tool_parse_size("--size", optarg, &s->width, &s->height) && check_side(s);
     case OPTION_SAMPLES: return parse_samples(s, optarg);
     case OPTION_DEPTH: return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &s->depth);
     case 'j': return tool_parse_count("--threads", optarg, 1, THREADS_MAX, &s->threads);
@@ -211,6 +220,10 @@ static bool parse_request(request *r, int argc, char **argv) {
     }
     if (r->output != NULL && strcmp(r->output, "-") == 0 && (r->report || (r->stats != NULL && strcmp(r->stats, "-") == 0))) {
         tool_error(NULL, 0, "--stats: the picture already goes to standard output, expected a file for one of them");
+        return false;
+    }
+    if (r->output != NULL && r->stats != NULL && strcmp(r->output, r->stats) == 0 && strcmp(r->output, "-") != 0) {
+        tool_error(NULL, 0, "--stats: %s is the picture, expected another file", r->stats);
         return false;
     }
     return true;
@@ -341,22 +354,17 @@ static bool draw_picture(const request *r, const prepared *p, aset_statistics *s
 
 typedef size_t (*report_writer)(char *buffer, size_t size, const aset_report *report);
 
-static bool write_report(const char *path, const aset_report *report, report_writer writer) {
-    tool_output output;
+static bool write_report(tool_output *output, const aset_report *report, report_writer writer) {
     size_t n = writer(NULL, 0, report);
     char *text = malloc(n + 1);
-    if (text == NULL || !tool_output_open(&output, path)) {
-        free(text);
+    if (text == NULL) {
+        tool_error(NULL, 0, "no memory for a report of %zu bytes", n);
         return false;
     }
     (void)writer(text, n + 1, report);
-    bool done = tool_output_write(&output, text, n);
+    bool done = tool_output_write(output, text, n);
     free(text);
-    if (!done) {
-        tool_output_abort(&output);
-        return false;
-    }
-    return tool_output_close(&output);
+    return done && tool_output_close(output);
 }
 
 static int render(const request *r) {
@@ -366,15 +374,24 @@ static int render(const request *r) {
     if (!prepare(&p, &r->settings, r->scene)) {
         return TOOL_FAILED;
     }
+    /* opened before the work, so that a place that can't be written is known at once */
+    tool_output stats, text;
+    memset(&stats, 0, sizeof stats);
+    memset(&text, 0, sizeof text);
+    bool done = (r->stats == NULL || tool_output_open(&stats, r->stats)) && (!r->report || tool_output_open(&text, "-"));
     double start = tool_seconds();
-    bool done = draw_picture(r, &p, &statistics);
+    done = done && draw_picture(r, &p, &statistics);
     aset_report report = {&p.tracer, &p.arena, &statistics, aset_method_name(r->settings.method), "flat",
                           p.load_s,  p.build_s, tool_seconds() - start};
     if (done && r->stats != NULL) {
-        done = write_report(r->stats, &report, aset_report_json);
+        done = write_report(&stats, &report, aset_report_json);
     }
     if (done && r->report) {
-        done = write_report("-", &report, aset_report_text);
+        done = write_report(&text, &report, aset_report_text);
+    }
+    if (!done) {
+        tool_output_abort(&stats);
+        tool_output_abort(&text);
     }
     prepare_free(&p);
     return done ? TOOL_DONE : TOOL_FAILED;

@@ -132,7 +132,7 @@ aset_status aset_scene_init(aset_scene *scene, aset_arena *arena, const aset_cou
 
 /*
  * A sink that adds to the scene. Its functions return ASET_ERR_NOMEM where an entity exceeds the limits, ASET_ERR_GEOMETRY for
- * coordinates that are not finite, polygons of fewer than 3 points or of other than the announced number, spheres of radius
+ * coordinates that are not finite or beyond 10^15 (10^150 in double), polygons of fewer than 3 points or of other than the announced number, spheres of radius
  * 0, cones without length, without any radius or with radii of different sign, and ASET_ERR_ARGUMENT for an object before any
  * material; the scene then is as before that entity. A polygon without area is kept, and no ray hits it.
  */

@@ -140,10 +140,13 @@ typedef struct aset_space_size {
 
 /* --- private fields, public so that you can hold them --- */
 
-/* Slice k of axis a is the plane at low[a] + k width[a], or at planes[a][k] if there is a table. */
+/*
+ * Slice k of axis a is the plane at low[a] + k width[a], but the first and the last are at first[a] and last[a], a little outside
+ * the scene; or all are in planes[a] if there is a table.
+ */
 typedef struct aset_slices {
     const aset_real *planes[3];
-    aset_real low[3], width[3], per_width[3];
+    aset_real low[3], width[3], per_width[3], first[3], last[3];
     uint32_t n[3];
 } aset_slices;
 

@@ -1,6 +1,17 @@
 /* entity.c - the checks of entities, in one place for all sinks. */
 #include "scene/entity.h"
 
+/* Where a point may be: so that products of two differences, the most that anything computes, stay within the range of numbers. */
+#if ASET_REAL_BITS == 32
+#define COORDINATE_MAX R(1e15)
+#else
+#define COORDINATE_MAX R(1e150)
+#endif
+
+static bool is_place(aset_vec3 p) {
+    return vec_largest(p) <= COORDINATE_MAX && vec_finite(p);
+}
+
 static bool is_amount(aset_real x) {
     return x >= 0 && real_finite(x);
 }
@@ -10,7 +21,7 @@ aset_status entity_check_colour(const aset_colour *colour) {
 }
 
 aset_status entity_check_view(const aset_view *view) {
-    if (!vec_finite(view->from) || !vec_finite(view->at) || !vec_finite(view->up)) {
+    if (!is_place(view->from) || !is_place(view->at) || !vec_finite(view->up)) {
         return ASET_ERR_GEOMETRY;
     }
     aset_vec3 along = vec_unit(vec_sub(view->at, view->from));
@@ -23,7 +34,7 @@ aset_status entity_check_view(const aset_view *view) {
 }
 
 aset_status entity_check_light(const aset_light *light) {
-    if (!vec_finite(light->position) || (light->directional && !(vec_largest(light->position) > 0))) {
+    if (!is_place(light->position) || (light->directional && !(vec_largest(light->position) > 0))) {
         return ASET_ERR_GEOMETRY;
     }
     return light->has_colour ? entity_check_colour(&light->colour) : ASET_OK;
@@ -68,12 +79,13 @@ aset_status entity_use_material(aset_recent_materials *recent, bool *is_new) {
 }
 
 aset_status entity_check_sphere(const aset_vec3 *centre, aset_real radius) {
-    return vec_finite(*centre) && real_finite(radius) && radius != 0 ? ASET_OK : ASET_ERR_GEOMETRY;
+    return is_place(*centre) && real_abs(radius) <= COORDINATE_MAX && radius != 0 ? ASET_OK : ASET_ERR_GEOMETRY;
 }
 
 aset_status entity_check_cone(const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
                               aset_real apex_radius) {
-    bool finite = vec_finite(*base) && vec_finite(*apex) && real_finite(base_radius) && real_finite(apex_radius);
+    bool finite = is_place(*base) && is_place(*apex) && real_abs(base_radius) <= COORDINATE_MAX &&
+                  real_abs(apex_radius) <= COORDINATE_MAX;
     bool one_sign = (base_radius >= 0 && apex_radius >= 0) || (base_radius <= 0 && apex_radius <= 0);
     bool some = base_radius != 0 || apex_radius != 0;
     return finite && one_sign && some && vec_largest(vec_sub(*apex, *base)) > 0 ? ASET_OK : ASET_ERR_GEOMETRY;
@@ -98,7 +110,7 @@ aset_status outline_begin(aset_outline *outline, uint32_t n_points, bool with_no
 
 aset_status outline_point(aset_outline *outline, const aset_vec3 *point, const aset_vec3 *normal) {
     bool fits = outline->open && outline->n_given < outline->n_announced && outline->with_normals == (normal != NULL);
-    if (!fits || !vec_finite(*point) || (normal != NULL && !vec_finite(*normal))) {
+    if (!fits || !is_place(*point) || (normal != NULL && !vec_finite(*normal))) {
         outline->open = false;
         return ASET_ERR_GEOMETRY;
     }

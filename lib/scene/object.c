@@ -70,7 +70,7 @@ void aset_object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low
 
 aset_real object_margin(aset_vec3 low, aset_vec3 high) {
     aset_real size = vec_largest(vec_sub(high, low)), largest = real_max(vec_largest(low), vec_largest(high));
-    aset_real margin = real_max(size * 32, largest * 8) * REAL_UNIT;
+    aset_real margin = real_max(size, largest) * (4 * REAL_UNIT);
     return margin > 0 ? margin : R(1e-30); /* every object in the point 0: any width will do, but a width it must be */
 }
 

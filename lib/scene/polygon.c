@@ -124,7 +124,8 @@ static aset_real triangle_nearest(const aset_real *points, unsigned stride, cons
     if (det == 0) {
         return REAL_INFINITY;
     }
-    return (u * a.z + v * b.z + w * c.z) / det * ray->shear[2];
+    aset_real part = 1 / det; /* weights first: the products below have the size of the scene, not its cube */
+    return (u * part * a.z + v * part * b.z + w * part * c.z) * ray->shear[2];
 }
 
 /* More points: the plane's distance first, since half of all planes lie behind the ray. */

@@ -98,8 +98,9 @@ aset_vec3 cone_normal(const aset_real *at, aset_vec3 point);
 aset_real object_nearest(const aset_scene *scene, uint32_t object, const probe *ray, aset_real limit);
 
 /*
- * How far boxes grow in a scene of these bounds: scene->margin. It must exceed the rounding of t (d), of a box's side and of a slice: a few u of the scene's size and
- * of the largest coordinate. Spaces grow boxes by twice this, so that what the clamp keeps lies strictly inside.
+ * How far boxes grow in a scene of these bounds: scene->margin. It must exceed the rounding of a side's t, 3 u of the distance
+ * between origin and side, which query.c keeps within 1.1 scene sizes, or 3 u of the largest coordinate: so 4 u of both.
+ * Spaces grow boxes by twice this, so that what the clamp keeps lies strictly inside.
  */
 aset_real object_margin(aset_vec3 low, aset_vec3 high);
 

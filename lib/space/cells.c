@@ -96,6 +96,19 @@ static bool chunk_touched(const chunk *c, const uint32_t bricks[3], uint32_t fac
     return from <= c->base + (c->n - 1) && to >= c->base;
 }
 
+/* The part of a box's marks that lies in the bricks of the chunk's layers. */
+static void mark_chunk_part(chunk *c, const uint32_t bricks[3], uint32_t faces, const voxel_box *box, int32_t z_low,
+                            int32_t z_high) {
+    for (uint32_t face = 0; face < faces; face++) {
+        voxel_box part = faces == 1 ? *box : cells_face_box(box, face);
+        part.low[2] = part.low[2] > z_low ? part.low[2] : z_low;
+        part.high[2] = part.high[2] < z_high ? part.high[2] : z_high;
+        if (part.low[2] <= part.high[2]) {
+            each_block(bricks, faces, &part, face, mark_chunk, c);
+        }
+    }
+}
+
 static void count_bricks(const aset_slices *slices, uint32_t bricks[3]) {
     for (int a = 0; a < 3; a++) {
         bricks[a] = (slices->n[a] + 3) / 4;
@@ -121,10 +134,12 @@ aset_status cells_measure(const aset_scene *scene, const aset_slices *slices, ui
         c.base = (uint32_t)base;
         c.n = (uint32_t)(all - base < at_once ? all - base : at_once);
         memset(scratch, 0, (size_t)c.n * 8);
+        uint32_t layer = bricks[0] * bricks[1] * faces;
+        int32_t z_low = (int32_t)(c.base / layer * 4), z_high = (int32_t)((c.base + (c.n - 1)) / layer * 4 + 3);
         for (uint32_t i = 0; i < scene->counts.objects; i++) {
             voxel_box box = slices_object_box(slices, scene, i);
             if (chunk_touched(&c, bricks, faces, &box)) {
-                each_object_block(bricks, faces, &box, mark_chunk, &c);
+                mark_chunk_part(&c, bricks, faces, &box, z_low, z_high);
             }
         }
         for (uint32_t k = 0; k < c.n; k++) {

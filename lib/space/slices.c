@@ -2,26 +2,32 @@
 #include "space/slices.h"
 
 /*
- * How far the volume reaches beyond the scene's box, in margins of objects. Much more than an object's own growth, so that where
- * objects lie in what would be slices of the bare box (a ground, storeys, symmetric scenes) the slices pass beside them by
- * more than that growth, and a flat object stays one voxel thick. Unequal, by the golden section, so that the one place
- * where both shifts cancel is no simple fraction of the volume.
+ * In margins of objects, whose boxes grow by two of them on each side: how far the outermost slices lie outside the scene, and by how
+ * much the inner ones lie before the places that equal division gives. Where objects end in such a place (a ground, storeys,
+ * symmetric scenes) the slice passes before them by more than they grow: a flat object stays one voxel thick, and a box
+ * that begins or ends at the place belongs to the voxel behind it, as floor() of the bare numbers would have it.
  */
-#define BEYOND_LOW 79
-#define BEYOND_HIGH 49
+#define OUTSIDE 8
+#define BEFORE 4
 
 void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]) {
     aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
-    aset_real margin = 0;
+    aset_real margin = REAL_UNIT;
     if (aset_scene_bounds(scene, &low, &high)) {
         margin = scene->margin;
     }
-    const aset_real lows[3] = {low.x, low.y, low.z}, highs[3] = {high.x, high.y, high.z};
     for (int a = 0; a < 3; a++) {
+        aset_real from = vec_at(&low, a), to = vec_at(&high, a);
         slices->n[a] = divisions[a];
         slices->planes[a] = NULL;
-        slices->low[a] = lows[a] - BEYOND_LOW * margin;
-        slices->width[a] = (highs[a] + BEYOND_HIGH * margin - slices->low[a]) / (aset_real)divisions[a];
+        slices->first[a] = from - OUTSIDE * margin;
+        slices->last[a] = to + OUTSIDE * margin;
+        if (to - from < OUTSIDE * margin) { /* a flat scene is divided as if it were not quite */
+            from = slices->first[a];
+            to = slices->last[a];
+        }
+        slices->width[a] = (to - from) / (aset_real)divisions[a];
+        slices->low[a] = from - BEFORE * margin;
         slices->per_width[a] = 1 / slices->width[a];
     }
 }
@@ -117,7 +123,7 @@ static bool settle(const aset_slices *slices, const probe *ray, int b, aset_real
 /* An axis along which the ray stands still: its voxel never changes. */
 static bool stand(const aset_slices *slices, const probe *ray, int a, const voxel_box *window, int32_t *voxel) {
     aset_real x = ray->origin[a];
-    if (x < slices->low[a] || x > slices_plane(slices, a, (int32_t)slices->n[a])) {
+    if (x < slices->first[a] || x > slices->last[a]) {
         return false;
     }
     *voxel = slices_locate(slices, a, x);
@@ -144,7 +150,7 @@ bool dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const vox
         }
         t_out = real_min(t_out, out);
     }
-    if (t_out < t || t_out < 0) {
+    if (axis < 0 || t_out < t || t_out < 0) { /* a ray that moves along no axis enters nothing */
         return false;
     }
     for (int a = 0; a < 3; a++) {
@@ -167,8 +173,7 @@ bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray) {
     dda_prepare(walk, slices, ray);
     for (int a = 0; a < 3; a++) {
         aset_real x = ray->origin[a];
-        int32_t last = (int32_t)slices->n[a] - 1;
-        if (x < slices->low[a] || x > slices_plane(slices, a, last + 1)) {
+        if (x < slices->first[a] || x > slices->last[a]) {
             return false;
         }
         int32_t k = slices_locate(slices, a, x);

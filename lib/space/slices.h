@@ -47,7 +47,10 @@ static inline aset_real slices_plane(const aset_slices *slices, int a, int32_t k
     if (slices->planes[a] != NULL) { /* SET */
         return slices->planes[a][k];
     }
-    return slices->low[a] + (aset_real)k * slices->width[a];
+    if (k <= 0) {
+        return slices->first[a];
+    }
+    return (uint32_t)k < slices->n[a] ? slices->low[a] + (aset_real)k * slices->width[a] : slices->last[a];
 }
 
 /* The voxel that holds x: the last one whose lower slice is not above x; the first or last for x outside. */

@@ -96,8 +96,8 @@ static size_t reserved(const aset_space_size *size, const aset_space_options *op
     return options->reserve + (options->textures > 0 ? ASET_BYTES_SUMMARY(size->n_cells, options->textures) : 0);
 }
 
-/* One step coarser. False: nothing is coarser. */
-static bool shrink(aset_space_size *size, const aset_method *method) {
+/* One step coarser, a large one if the need is far off. False: nothing is coarser. */
+static bool shrink(aset_space_size *size, const aset_method *method, bool far_off) {
     uint32_t *n = size->divisions;
     if (method->by_depth) {
         size->depth--;
@@ -110,7 +110,8 @@ static bool shrink(aset_space_size *size, const aset_method *method) {
         return false;
     }
     for (int a = 0; a < 3; a++) {
-        n[a] = n[a] > 1 ? n[a] - (n[a] + 7) / 8 : 1;
+        uint32_t less = far_off ? (n[a] + 1) / 2 : (n[a] + 7) / 8;
+        n[a] = n[a] > less ? n[a] - less : 1;
     }
     return true;
 }
@@ -122,7 +123,8 @@ static aset_status measure_to_fit(aset_space_size *size, const aset_scene *scene
     while (is_auto && (status == ASET_ERR_NOMEM ||
                        (status == ASET_OK && !aset_arena_fits(arena, size->total + reserved(size, options))))) {
         aset_space_size smaller = *size;
-        if (!shrink(&smaller, method)) {
+        size_t left = arena->size - arena->used;
+        if (!shrink(&smaller, method, size->total / 8 > left)) {
             break; /* a summary may still need less than was reserved for it */
         }
         *size = smaller;

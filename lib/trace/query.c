@@ -5,8 +5,8 @@
  * added first wins, so that every space and brute force agree. Approximate: the first cell entered at t > 0 that has a
  * texture is the hit.
  *
- * A ray that starts very far away is first brought near: beyond FAR scene sizes the rounding of its slice crossings would
- * exceed the boxes' margins. All spaces see the same moved ray.
+ * A ray that starts away from the scene is first brought near it: from afar the rounding of its slice crossings would exceed
+ * the boxes' margins. All spaces see the same moved ray.
  */
 #include "trace/query.h"
 
@@ -14,7 +14,8 @@
 #include "scene/shape.h"
 #include "space/walk.h"
 
-#define FAR 4
+/* Where a ray from outside is made to start: this part of the scene's size before the box. */
+#define NEAR R(0.0625)
 
 typedef struct exact_query {
     walk_request walk;
@@ -71,15 +72,17 @@ static bool exact(exact_query *q, const aset_tracer *tracer, const probe *ray, a
 
 typedef struct approximate_query {
     walk_request walk;
-    query_hit hit;
+    aset_real t;
+    uint32_t cell;
+    int face;
     bool found;
 } approximate_query;
 
 static aset_real visit_approximate(walk_request *walk, const walk_cell *cell) {
     approximate_query *q = (approximate_query *)walk;
-    q->hit.t = cell->t;
-    q->hit.cell = cell->index;
-    q->hit.face = cell->face;
+    q->t = cell->t;
+    q->cell = cell->index;
+    q->face = cell->face;
     q->found = true;
     return -REAL_INFINITY;
 }
@@ -105,53 +108,60 @@ static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const pro
     tracer->space->method->go(tracer->space, ray, &q.walk);
     statistics->cells_visited += q.walk.cells;
     statistics->nonempty_visited += q.walk.nonempty;
-    if (!q.found || !(q.hit.t < t_max)) {
+    if (!q.found || !(q.t < t_max)) {
         return false;
     }
     statistics->approx_hits++;
-    *hit = q.hit;
+    hit->t = q.t;
+    hit->cell = q.cell;
+    hit->face = q.face;
     hit->object = ASET_NO_OBJECT;
     return true;
 }
 
 #endif
 
-/* By how much a ray is to be moved along itself before anything is computed; 0 for nearly every ray. */
-static aset_real advance(const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
+/* Makes the ray ready; from outside it is moved near the scene. By how much. */
+static aset_real make_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
     aset_vec3 low, high;
-    if (!aset_scene_bounds(scene, &low, &high)) {
+    aset_real t_in, t_out;
+    *ray = probe_make(origin, direction);
+    if (!aset_scene_bounds(scene, &low, &high) || !probe_box(ray, low, high, &t_in, &t_out)) {
         return 0;
     }
-    aset_real size = vec_largest(vec_sub(high, low));
-    aset_vec3 to_centre = vec_sub(vec_along(low, R(0.5), vec_sub(high, low)), origin);
-    if (vec_largest(to_centre) <= FAR * size) {
+    aset_real moved = t_in - NEAR * vec_largest(vec_sub(high, low));
+    if (!(moved > 0)) {
         return 0;
     }
-    aset_real t = vec_dot(to_centre, direction) - 2 * size; /* the box lies within 0.87 size of its centre */
-    return t > 0 ? t : 0;
+    for (int a = 0; a < 3; a++) {
+        ray->origin[a] += moved * ray->direction[a];
+    }
+    return moved;
 }
 
 bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                    bool approximate, aset_statistics *statistics) {
-    aset_real moved = advance(tracer->scene, origin, direction);
-    probe ray = probe_make(vec_along(origin, moved, direction), direction);
+    probe ray;
+    aset_real moved = make_ready(&ray, tracer->scene, origin, direction);
+    hit->near = probe_origin(&ray);
     hit->curtailed = false;
-    bool found;
 #if ASET_WITH_APPROXIMATION
     if (approximate) {
-        found = approximate_hit(hit, tracer, &ray, t_max - moved, statistics);
-        if (found && trapped(tracer, hit->t + moved)) {
-            statistics->curtailed++;
-            hit->curtailed = true;
+        bool found = approximate_hit(hit, tracer, &ray, t_max - moved, statistics);
+        if (!found) {
             return false;
         }
+        hit->t_near = hit->t;
         hit->t += moved;
-        return found;
+        hit->curtailed = trapped(tracer, hit->t);
+        statistics->curtailed += hit->curtailed;
+        return !hit->curtailed;
     }
 #endif
     (void)approximate;
     exact_query q;
-    found = exact(&q, tracer, &ray, t_max - moved, false, statistics);
+    bool found = exact(&q, tracer, &ray, t_max - moved, false, statistics);
+    hit->t_near = q.best;
     hit->t = q.best + moved;
     hit->object = q.object;
     return found;
@@ -166,16 +176,15 @@ bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction,
     }
 #endif
     (void)approximate;
+    probe ray;
     exact_query q;
-    aset_real moved = advance(tracer->scene, origin, direction);
-    probe ray = probe_make(vec_along(origin, moved, direction), direction);
+    aset_real moved = make_ready(&ray, tracer->scene, origin, direction);
     return exact(&q, tracer, &ray, t_max - moved, true, statistics);
 }
 
-void query_surface(aset_hit *surface, const aset_tracer *tracer, const query_hit *hit, aset_vec3 origin,
-                   aset_vec3 direction) {
+void query_surface(aset_hit *surface, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction) {
     surface->t = hit->t;
-    surface->point = vec_along(origin, hit->t, direction);
+    surface->point = vec_along(hit->near, hit->t_near, direction);
     surface->object = hit->object;
     surface->cell = 0;
 #if ASET_WITH_APPROXIMATION
@@ -231,7 +240,7 @@ aset_status aset_closest_hit(bool *found, aset_hit *hit, const aset_tracer *trac
     *found = query_closest(&q, tracer, ray->origin, direction, ray->t_max * length, approximate,
                            statistics != NULL ? statistics : &ignored);
     if (*found) {
-        query_surface(hit, tracer, &q, ray->origin, direction);
+        query_surface(hit, tracer, &q, direction);
         hit->t = q.t / length;
     }
     return ASET_OK;

@@ -8,6 +8,8 @@
 /* What a closest-hit query found. */
 typedef struct query_hit {
     aset_real t;
+    aset_vec3 near;   /* where the ray was made to start, */
+    aset_real t_near; /* and t from there: the hit's point with the least rounding */
     uint32_t object; /* exact; ASET_NO_OBJECT for a cell */
     uint32_t cell;   /* approximate: dense number */
     int face;        /* approximate: axis * 2, + 1 going down */
@@ -21,7 +23,6 @@ bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction,
                aset_statistics *statistics);
 
 /* Point, normals and material of a hit. */
-void query_surface(aset_hit *surface, const aset_tracer *tracer, const query_hit *hit, aset_vec3 origin,
-                   aset_vec3 direction);
+void query_surface(aset_hit *surface, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction);
 
 #endif

@@ -22,13 +22,13 @@ bool policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t dept
 #endif
 }
 
-void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 origin, aset_vec3 direction) {
-    query_surface(&s->hit, tracer, hit, origin, direction);
+void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction) {
+    query_surface(&s->hit, tracer, hit, direction);
     s->direction = direction;
     s->entering = vec_dot(s->hit.geometric, direction) <= 0;
     s->facing = s->entering ? s->hit.geometric : vec_scale(s->hit.geometric, -1);
     s->normal = s->entering ? s->hit.normal : vec_scale(s->hit.normal, -1);
-    s->nudge = (vec_largest(s->hit.point) + s->hit.t) * NUDGE;
+    s->nudge = (vec_largest(s->hit.point) + hit->t_near) * NUDGE;
 }
 
 aset_vec3 shade_start(const shading *s, aset_vec3 direction) {

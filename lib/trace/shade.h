@@ -14,7 +14,7 @@ typedef struct shading {
     aset_real nudge;     /* how far new rays start from the surface */
 } shading;
 
-void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 origin, aset_vec3 direction);
+void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction);
 
 /* Whether rays of this kind and depth take the approximation: the one place that decides. */
 bool policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t depth);

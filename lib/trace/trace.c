@@ -107,7 +107,7 @@ aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 di
             continue;
         }
         shading s;
-        shading_make(&s, tracer, &found, ray.origin, ray.direction);
+        shading_make(&s, tracer, &found, ray.direction);
         aset_colour local = shade_local(tracer, &s, ray.depth, statistics);
         add_colour(&sum, ray.weight, &local);
         send_on(scratch, &n, tracer, &s, &ray);

@@ -53,6 +53,14 @@ aset_vec3 random_direction(random_state *r) {
     return dvec_real(random_unit(r));
 }
 
+aset_ray random_ray_from(random_state *r, double half_edge) {
+    aset_ray ray;
+    ray.origin = random_in_cube(r, half_edge);
+    ray.direction = random_direction(r);
+    ray.t_max = REAL_INFINITY;
+    return ray;
+}
+
 /* --- double precision --- */
 
 dvec dvec_make(double x, double y, double z) {
@@ -196,7 +204,8 @@ static thing *random_polygon(model *m, random_state *r, dvec middle, double size
         double radius = 0.5 * size * (n_points == 3 ? 1 : random_between(r, 0.25, 1));
         dvec point = dvec_along(dvec_along(middle, radius * cos(angle), u), radius * sin(angle), v);
         points[i] = dvec_real(point);
-        normals[i] = dvec_real(dvec_along(n, random_between(r, 0, 0.8), random_unit(r)));
+        double lean = random_between(r, 0, 0.8);
+        normals[i] = dvec_real(dvec_along(n, lean, random_unit(r)));
     }
     return model_polygon(m, points, with_normals ? normals : NULL, n_points);
 }

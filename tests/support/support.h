@@ -51,6 +51,8 @@ double random_between(random_state *r, double low, double high);
 bool random_chance(random_state *r, double share);
 aset_vec3 random_in_cube(random_state *r, double half_edge);
 aset_vec3 random_direction(random_state *r); /* of unit length */
+/* A ray without end from a point in a cube, in any direction. (No two random numbers in one expression: it has no order.) */
+aset_ray random_ray_from(random_state *r, double half_edge);
 
 /* --- double precision, for independent computations --- */
 
