@@ -30,8 +30,8 @@ void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisi
     aset_vec3 span = vec_sub(high, low);
     aset_real wanted = AUTO_DIVISIONS * cube_root(real_max((aset_real)scene->counts.objects, 1));
     uint32_t n = wanted > AUTO_DIVISIONS_MAX ? AUTO_DIVISIONS_MAX : (uint32_t)(wanted + R(0.5));
-    while (budget > 0 && n > 1 && (uint64_t)n * n * n * 12 / 8 / 64 > budget / 2) {
-        n -= (n + 7) / 8; /* the map of blocks alone, one and a half bits a block, would take half of it */
+    while (budget > 0 && n > 1 && 12 * ASET_BLOCK_WORDS(n, n, n, 6u) > budget / 2) {
+        n -= (n + 7) / 8; /* MSET's map of blocks alone would take half of it */
     }
     for (int a = 0; a < 3; a++) {
         divisions[a] = vec_at(&span, a) > AUTO_THIN * vec_largest(span) ? n : 1;

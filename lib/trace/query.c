@@ -32,7 +32,7 @@ static aset_real visit_exact(walk_request *walk, const walk_cell *cell) {
     exact_query *q = (exact_query *)walk; /* walk is its first member */
     for (uint32_t i = 0; i < cell->n; i++) {
         uint32_t object = cell->objects[i];
-        aset_real t = object_nearest(q->scene, object, q->ray, q->best);
+        aset_real t = object_nearest(q->scene, object, q->ray, q->end);
         q->tests++;
         bool nearer = t < q->best || (t == q->best && q->object != ASET_NO_OBJECT && object < q->object);
         q->hits += t < q->end;
@@ -111,7 +111,6 @@ static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const pro
     if (!q.found || !(q.t < t_max)) {
         return false;
     }
-    statistics->approx_hits++;
     hit->t = q.t;
     hit->cell = q.cell;
     hit->face = q.face;
@@ -155,6 +154,7 @@ bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, 
         hit->t += moved;
         hit->curtailed = trapped(tracer, hit->t);
         statistics->curtailed += hit->curtailed;
+        statistics->approx_hits += !hit->curtailed;
         return !hit->curtailed;
     }
 #endif
