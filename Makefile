@@ -7,6 +7,15 @@ PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
 BUILD ?= build
 
+# make V=1 shows the commands.
+ifeq ($(V),)
+Q := @
+say = @echo "  $(1)  $@"
+else
+Q :=
+say =
+endif
+
 CC ?= cc
 AR ?= ar
 CFLAGS ?= -O2 -g
@@ -37,29 +46,35 @@ all: $(ARCHIVES) $(SHARED) $(BUILD)/aset examples ## build everything: libraries
 $(BUILD)/obj/tools/%.o: EXTRA = $(POSIX) $(PNG_CFLAGS)
 $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) $(EXTRA) -MMD -MP -c $< -o $@
+	$(call say,CC)
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) $(EXTRA) -MMD -MP -c $< -o $@
 $(BUILD)/pic/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) -fPIC -MMD -MP -c $< -o $@
+	$(call say,CC)
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) -fPIC -MMD -MP -c $< -o $@
 
 $(CORE_A): $(call objects,$(CORE),obj)
 $(LOAD_A): $(call objects,$(LOAD),obj)
 $(PROCEDURAL_A): $(call objects,$(PROCEDURAL),obj)
 $(ARCHIVES):
+	$(call say,AR)
 	@rm -f $@
-	$(AR) rcs $@ $^
+	$(Q)$(AR) rcs $@ $^
 
 $(SHARED): $(call objects,$(CORE) $(LOAD) $(PROCEDURAL),pic)
-	$(CC) $(CFLAGS) $(LDFLAGS) -shared -Wl,-soname,libaset.so.$(SOVERSION) -o $@ $^ -lm
+	$(call say,LD)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -shared -Wl,-soname,libaset.so.$(SOVERSION) -o $@ $^ -lm
 
 $(BUILD)/aset: $(call objects,$(TOOL),obj) $(ARCHIVES)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(PNG_LIBS) -lpthread -lm
+	$(call say,LD)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(PNG_LIBS) -lpthread -lm
 
 # --- examples: each is one file and the libraries, with the public headers only ---
 
 $(BUILD)/examples/%: examples/%.c $(wildcard examples/*.h) $(ARCHIVES)
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) -ffp-contract=off -Iinclude $(PNG_CFLAGS) \
+	$(call say,CC)
+	$(Q)$(CC) $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) -ffp-contract=off -Iinclude $(PNG_CFLAGS) \
 	  -o $@ $< $(ARCHIVES) $(PNG_LIBS) -lm
 
 examples: $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## build the examples
@@ -69,7 +84,8 @@ examples: $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## build the examples
 TOOL_TESTABLE := $(call objects,$(filter-out tools/aset.c,$(TOOL)),obj)
 $(BUILD)/tests/%: tests/%.c $(wildcard tests/support/*) $(TOOL_TESTABLE) $(ARCHIVES)
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(CMOCKA_CFLAGS) -Itests -Itools -MMD -MP -o $@ $< \
+	$(call say,CC)
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(CMOCKA_CFLAGS) -Itests -Itools -MMD -MP -o $@ $< \
 	  $(wildcard tests/support/*.c) $(TOOL_TESTABLE) $(ARCHIVES) $(CMOCKA_LIBS) $(PNG_LIBS) -lpthread -lm
 
 test: $(addprefix $(BUILD)/tests/,$(TESTS)) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
@@ -77,7 +93,7 @@ test: $(addprefix $(BUILD)/tests/,$(TESTS)) $(BUILD)/aset all check-layers check
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi; echo "all tests passed"
 
-test-long: $(BUILD)/aset ## MSET against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)
+test-long: $(BUILD)/aset ## every method against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)
 	bash tests/long.sh $(BUILD)/aset $(BUILD)/long
 
 test-sanitize: ## the tests once more with the address and undefined-behaviour sanitizers
