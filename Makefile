@@ -134,6 +134,15 @@ hp9000: $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## draw the paper's figures 
 	$(BUILD)/examples/hp9000_gears $(BUILD)/hp9000
 	$(BUILD)/examples/hp9000_moon $(BUILD)/hp9000
 
+methods: $(BUILD)/aset ## every method's draft of gears and snow in one sheet, and a table of all methods on all scenes
+	bash tools/methods.sh $(BUILD)/aset $(BUILD)/methods
+
+method-costs: $(BUILD)/aset ## what a step of each method costs, in instructions (needs valgrind): DESIGN.md's table
+	@bash tools/costs.sh $(BUILD)/aset $(BUILD)/costs
+
+bench-walk: $(BUILD)/tests/bench_walk ## what the generic walk costs MSET against a hand-fused loop
+	$(BUILD)/tests/bench_walk
+
 prices: $(BUILD)/aset ## the README's price list: bytes, time, dB
 	@bash tools/prices.sh $(BUILD)/aset $(BUILD)/prices
 
@@ -171,5 +180,5 @@ help: ## show this text
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
 .PHONY: all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
-  hp9000 prices pictures deps install clean help
+  hp9000 methods method-costs bench-walk prices pictures deps install clean help
 .SECONDARY:

@@ -101,6 +101,12 @@ static inline framed frame(const aset_real *p, const probe *ray) {
     return f;
 }
 
+/* Its y alone: the same number. */
+static inline aset_real frame_y(const aset_real *p, const probe *ray) {
+    aset_real z = p[ray->axis[2]] - ray->origin[ray->axis[2]];
+    return p[ray->axis[1]] - ray->origin[ray->axis[1]] - ray->shear[1] * z;
+}
+
 /* 1 if the edge crosses the half line y = 0, x > 0. */
 static inline unsigned edge_crosses(const framed *p, const framed *q) {
     if ((p->y > 0) == (q->y > 0)) {
@@ -137,12 +143,16 @@ static aset_real outline_nearest(const aset_real *at, const aset_real *points, u
     if (!(t > 0) || slope == 0) {
         return REAL_INFINITY;
     }
-    framed previous = frame(points + (size_t)(n_points - 1) * stride, ray);
+    const aset_real *previous = points + (size_t)(n_points - 1) * stride, *next = points;
+    bool was_above = frame_y(previous, ray) > 0;
     unsigned crossings = 0;
-    for (uint32_t i = 0; i < n_points; i++) {
-        framed next = frame(points + (size_t)i * stride, ray);
-        crossings += edge_crosses(&previous, &next);
-        previous = next;
+    for (uint32_t i = 0; i < n_points; i++, previous = next, next += stride) {
+        bool is_above = frame_y(next, ray) > 0;
+        if (is_above != was_above) { /* few edges do, so only they are framed whole */
+            framed p = frame(previous, ray), q = frame(next, ray);
+            crossings += edge_crosses(&p, &q);
+        }
+        was_above = is_above;
     }
     return (crossings & 1) != 0 ? t : REAL_INFINITY;
 }
