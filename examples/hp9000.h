@@ -1,6 +1,7 @@
 /*
- * hp9000.h - what the hp9000 examples share: a scene drawn exactly (MSET) and approximately (ASET) out of one static arena of the
- * size that the paper published for the HP9000, side by side in one picture, and what it cost beside the paper's figures.
+ * hp9000.h - what the hp9000 examples share: a scene drawn exactly (MSET) and approximately (ASET) out of one static arena
+ * of the size that the paper published for the HP9000, side by side in one picture, and what it cost beside the paper's
+ * figures.
  */
 #ifndef EXAMPLES_HP9000_H
 #define EXAMPLES_HP9000_H
@@ -89,8 +90,8 @@ static double draw_panel(const sheet *s, int index, void *block, aset_statistics
     status = aset_render_rows(&tracer, &scene.view, &picture, 0, PANEL, &scratch, statistics);
     if (status != ASET_OK) fail(p->label, status);
     double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
-    const aset_report report = {.tracer = &tracer, .arena = &arena, .statistics = statistics, .method = "mset", .cells = "flat",
-                                .render_s = seconds};
+    const aset_report report = {.tracer = &tracer, .arena = &arena, .statistics = statistics, .method = "mset",
+                                .cells = "flat", .render_s = seconds};
     char text[4096];
     aset_report_text(text, sizeof text, &report);
     printf("--- %s, %u divisions: %s\n%s\n", s->scene, (unsigned)s->divisions, p->label, text);

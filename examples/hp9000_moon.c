@@ -1,4 +1,7 @@
-/* hp9000_moon.c - a tetrahedron and a moon (the paper's figure 7) in a static arena of 390,404 bytes. hp9000_moon [DIRECTORY] */
+/*
+ * hp9000_moon.c - a tetrahedron and a moon (the paper's figure 7) in a static arena of 390,404 bytes. hp9000_moon
+ * [DIRECTORY]
+ */
 #include "hp9000.h"
 
 static ASET_ARENA_BLOCK(block, 390404);

@@ -1,6 +1,6 @@
 /*
- * hp9000_snow.c - Snow at 100, 50 and 30 divisions, as in the paper's figures 3 to 5, each in a static arena of exactly the bytes
- * that its Table 3 gives for ASET. hp9000_snow [DIRECTORY]
+ * hp9000_snow.c - Snow at 100, 50 and 30 divisions, as in the paper's figures 3 to 5, each in a static arena of exactly the
+ * bytes that its Table 3 gives for ASET. hp9000_snow [DIRECTORY]
  */
 #include "hp9000.h"
 

@@ -1,4 +1,4 @@
-/* smallest.c - a complete program: a scene in code, 64 kB of static memory, an approximate picture as PPM on standard output. */
+/* smallest.c - a whole program: a scene in code, 64 kB of static memory, an approximate picture on standard output (PPM). */
 #include <aset/aset.h>
 
 #include <stdio.h>
@@ -34,7 +34,8 @@ int main(void) {
     aset_sink sink = aset_scene_sink(&scene);
     CHECK(sink.background(sink.context, &(aset_colour){0.1f, 0.2f, 0.4f}));
     CHECK(sink.light(sink.context, &(aset_light){.position = {5, -8, 9}}));
-    CHECK(sink.material(sink.context, &(aset_material){.fill = {1, 0.6f, 0.3f}, .diffuse = 0.8f, .specular = 0.3f, .shine = 20}));
+    const aset_material orange = {.fill = {1, 0.6f, 0.3f}, .diffuse = 0.8f, .specular = 0.3f, .shine = 20};
+    CHECK(sink.material(sink.context, &orange));
     for (int i = 0; i < 27; i++) {
         aset_vec3 centre = {(aset_real)(i % 3) - 1, (aset_real)(i / 3 % 3) - 1, (aset_real)(i / 9) - 1};
         CHECK(sink.sphere(sink.context, &centre, 0.4f));
@@ -45,7 +46,8 @@ int main(void) {
     CHECK(aset_summary_build(&summary, &space, 0, &arena));
     CHECK(aset_scratch_init(&scratch, 0, &arena));
     const aset_view view = {.from = {3, -7, 3}, .at = {0, 0, -0.2f}, .up = {0, 0, 1}, .angle_deg = 40};
-    const aset_tracer tracer = {.scene = &scene, .space = &space, .summary = &summary, .approx_kinds = ASET_ALL_KINDS, .approx_depth = 1, .curtail = 0.5f};
+    const aset_tracer tracer = {.scene = &scene, .space = &space, .summary = &summary,
+                                .approx_kinds = ASET_ALL_KINDS, .approx_depth = 1, .curtail = 0.5f};
     const aset_picture picture = {.width = SIDE, .height = SIDE, .pixels = row, .on_row = write_row, .context = stdout};
     printf("P6\n%d %d\n255\n", SIDE, SIDE);
     CHECK(aset_render_rows(&tracer, &view, &picture, 0, SIDE, &scratch, NULL));

@@ -4,7 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Scratch for counting: the more, the fewer passes over the objects; trees list what they divide, on every level at the most. */
+/*
+ * Scratch for counting: the more, the fewer passes over the objects; trees list what they divide, on every level at the
+ * most.
+ */
 #define SCRATCH (4u << 20)
 #define SCRATCH_OBJECT (sizeof(aset_box) + 4u * (3u * ASET_DEPTH_TREE_MAX + 1u))
 

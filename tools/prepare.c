@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const aset_method *const tool_methods[] = {&aset_mset, &aset_set, &aset_grid, &aset_octree, &aset_arts, &aset_excell, &aset_brute, NULL};
+const aset_method *const tool_methods[] = {&aset_mset, &aset_set,    &aset_grid,  &aset_octree,
+                                            &aset_arts, &aset_excell, &aset_brute, NULL};
 
 const aset_method *tool_method_find(const char *name) {
     for (size_t i = 0; tool_methods[i] != NULL; i++) {

@@ -44,8 +44,8 @@ typedef struct prepared {
 } prepared;
 
 /*
- * A source of entities that can be read again: a file, or standard input, which is kept in a temporary file. False after an error
- * line.
+ * A source of entities that can be read again: a file, or standard input, which is kept in a temporary file. False after an
+ * error line.
  */
 typedef struct tool_source {
     const char *path;
@@ -63,8 +63,8 @@ extern const aset_method *const tool_methods[];
 const aset_method *tool_method_find(const char *name);
 
 /*
- * What a method takes, measured outside any budget: the scene is loaded into an arena of its own. block is to be freed. False after
- * an error line.
+ * What a method takes, measured outside any budget: the scene is loaded into an arena of its own. block is to be freed.
+ * False after an error line.
  */
 typedef struct measured {
     void *block;

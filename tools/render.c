@@ -19,7 +19,8 @@ static const char help[] =
     "SCENE is an .nff file, or - for NFF on standard input. Without -o the picture is drawn and thrown away.\n"
     "\n"
     "  -o, --output FILE       .png or .ppm; - for PNG on standard output\n"
-    "  -m, --method NAME       mset, set, grid, octree, arts, excell, brute; aset: mset --approx all --approx-depth 1; default mset\n"
+    "  -m, --method NAME       mset, set, grid, octree, arts, excell or brute; default mset;\n"
+    "                          aset stands for mset --approx all --approx-depth 1\n"
     "      --approx KINDS      rays that may be approximate: primary,shadow,reflected,refracted, all or none; default none\n"
     "      --approx-depth L    rays of depth L and deeper are (the eye ray has depth 0); default 1\n"
     "      --grid N            divisions on every axis; or NXxNYxNZ, or auto (as many as pay and fit); default auto\n"
@@ -104,7 +105,8 @@ static bool parse_method(request *r, const char *text) {
     r->is_aset = strcmp(text, "aset") == 0;
     const aset_method *method = r->is_aset ? &aset_mset : tool_method_find(text);
     if (method == NULL) {
-        tool_error(NULL, 0, "--method: \"%s\" is no method, expected mset, aset, set, grid, octree, arts, excell or brute", text);
+        tool_error(NULL, 0, "--method: \"%s\" is no method, expected mset, aset, set, grid, octree, arts, excell or brute",
+                   text);
         return false;
     }
     r->settings.method = method;
@@ -142,7 +144,8 @@ static bool parse_samples(settings *s, const char *text) {
 
 static bool check_side(const settings *s) {
     if (s->width > SIDE_MAX || s->height > SIDE_MAX) {
-        tool_error(NULL, 0, "--size: %" PRIu32 "x%" PRIu32 " is too large, expected at most %u on a side", s->width, s->height, SIDE_MAX);
+        tool_error(NULL, 0, "--size: %" PRIu32 "x%" PRIu32 " is too large, expected at most %u on a side", s->width,
+                   s->height, SIDE_MAX);
         return false;
     }
     return true;
@@ -218,7 +221,8 @@ static bool parse_request(request *r, int argc, char **argv) {
     if (r->is_aset && !r->has_approx) {
         r->settings.approx_kinds = ASET_ALL_KINDS;
     }
-    if (r->output != NULL && strcmp(r->output, "-") == 0 && (r->report || (r->stats != NULL && strcmp(r->stats, "-") == 0))) {
+    bool more = r->report || (r->stats != NULL && strcmp(r->stats, "-") == 0);
+    if (r->output != NULL && strcmp(r->output, "-") == 0 && more) {
         tool_error(NULL, 0, "--stats: the picture already goes to standard output, expected a file for one of them");
         return false;
     }

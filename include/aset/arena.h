@@ -50,15 +50,15 @@ typedef struct aset_mark {
 } aset_mark;
 
 /*
- * Starts an arena on the caller's block of size bytes, which must be aligned to ASET_ALIGN and stay valid as long as anything
- * in it is used. A size of 0 with any block is allowed: every allocation then fails. ASET_ERR_ARGUMENT: no arena, no block
- * of a size above 0, or a block that is not aligned.
+ * Starts an arena on the caller's block of size bytes, which must be aligned to ASET_ALIGN and stay valid as long as
+ * anything in it is used. A size of 0 with any block is allowed: every allocation then fails. ASET_ERR_ARGUMENT: no arena,
+ * no block of a size above 0, or a block that is not aligned.
  */
 aset_status aset_arena_init(aset_arena *arena, void *block, size_t size);
 
 /*
- * bytes bytes (rounded up to ASET_ALIGN), not cleared, accounted to category. NULL if they do not fit: then missing is set and
- * nothing else changed. For 0 bytes a pointer that must not be read.
+ * bytes bytes (rounded up to ASET_ALIGN), not cleared, accounted to category. NULL if they do not fit: then missing is set
+ * and nothing else changed. For 0 bytes a pointer that must not be read.
  */
 void *aset_arena_alloc(aset_arena *arena, size_t bytes, aset_category category);
 

@@ -1,6 +1,6 @@
 /*
- * aset.h - everything of libaset's core: approximate ray tracing in a memory budget fixed at compile time, after Dauenhauer and
- * Semwal, "Approximate Ray Tracing" (Graphics Interface 1990).
+ * aset.h - everything of libaset's core: approximate ray tracing in a memory budget fixed at compile time, after Dauenhauer
+ * and Semwal, "Approximate Ray Tracing" (Graphics Interface 1990).
  *
  * A complete program is examples/smallest.c. The way of the data, and the header of each part:
  *

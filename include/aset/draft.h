@@ -33,15 +33,15 @@ typedef struct aset_summary {
 uint32_t aset_summary_capacity(const aset_scene *scene);
 
 /*
- * The bytes that aset_summary_build will take: ASET_BYTES_SUMMARY(space->cells.n_cells, n) for the n textures that there turn out to
- * be, at most capacity. Makes the list in the arena's free bytes without taking them. ASET_ERR_NOMEM: the list alone does not
- * fit; then *bytes, and arena->missing, are enough but may be more than needed.
+ * The bytes that aset_summary_build will take: ASET_BYTES_SUMMARY(space->cells.n_cells, n) for the n textures that there
+ * turn out to be, at most capacity. Makes the list in the arena's free bytes without taking them. ASET_ERR_NOMEM: the list
+ * alone does not fit; then *bytes, and arena->missing, are enough but may be more than needed.
  */
 aset_status aset_summary_measure(size_t *bytes, const aset_space *space, uint32_t capacity, aset_arena *arena);
 
 /*
- * Makes the summary of a built space; capacity 0 takes aset_summary_capacity. ASET_ERR_NOMEM: arena and summary are as before, and
- * arena->missing as aset_summary_measure would say; ASET_ERR_ARGUMENT: a capacity above ASET_TEXTURES_MAX.
+ * Makes the summary of a built space; capacity 0 takes aset_summary_capacity. ASET_ERR_NOMEM: arena and summary are as
+ * before, and arena->missing as aset_summary_measure would say; ASET_ERR_ARGUMENT: a capacity above ASET_TEXTURES_MAX.
  */
 aset_status aset_summary_build(aset_summary *summary, const aset_space *space, uint32_t capacity, aset_arena *arena);
 

@@ -30,14 +30,14 @@ typedef struct aset_load_report {
 } aset_load_report;
 
 /*
- * Reads a scene in the Neutral File Format (Haines 1987) and emits its entities into sink. Tokens decide, not lines. Takes v, b, l,
- * f, c, s, p, pp and comments; a view's hither is read and not used (it serves hidden-surface programs); objects need a
- * material and a view before them, and a file without a view is an error. options may be NULL for all defaults.
+ * Reads a scene in the Neutral File Format (Haines 1987) and emits its entities into sink. Tokens decide, not lines. Takes
+ * v, b, l, f, c, s, p, pp and comments; a view's hither is read and not used (it serves hidden-surface programs); objects
+ * need a material and a view before them, and a file without a view is an error. options may be NULL for all defaults.
  *
- * ASET_ERR_SYNTAX: not NFF (letters for numbers, a number that is not finite or outside the range of aset_real, counts that are
- * not positive whole numbers, a file that ends within an entity, an empty one). ASET_ERR_GEOMETRY:
- * a view without a direction or with up along it. ASET_ERR_UNSUPPORTED: an object or effect that is switched off. Others:
- * the sink's, at the entity that it refused. ASET_ERR_READ: the callback failed. report (not NULL) tells the place.
+ * ASET_ERR_SYNTAX: not NFF (letters for numbers, a number that is not finite or outside the range of aset_real, counts that
+ * are not positive whole numbers, a file that ends within an entity, an empty one). ASET_ERR_GEOMETRY: a view without a
+ * direction or with up along it. ASET_ERR_UNSUPPORTED: an object or effect that is switched off. Others: the sink's, at the
+ * entity that it refused. ASET_ERR_READ: the callback failed. report (not NULL) tells the place.
  */
 aset_status aset_load_nff(const aset_sink *sink, aset_read read, void *context, const aset_load_options *options,
                           aset_load_report *report);

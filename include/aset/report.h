@@ -21,8 +21,8 @@ typedef struct aset_report {
 } aset_report;
 
 /*
- * Write at most size bytes into buffer, the closing 0 included, and return the length of the whole text without it: a result of
- * size or more means that it was cut off. buffer may be NULL for size 0. The text is about 1.5 kB, the JSON 1.2 kB.
+ * Write at most size bytes into buffer, the closing 0 included, and return the length of the whole text without it: a result
+ * of size or more means that it was cut off. buffer may be NULL for size 0. The text is about 1.5 kB, the JSON 1.2 kB.
  */
 size_t aset_report_text(char *buffer, size_t size, const aset_report *report);
 size_t aset_report_json(char *buffer, size_t size, const aset_report *report);

@@ -16,8 +16,9 @@ extern "C" {
 /*
  * Where entities go. A source calls the functions in this order: view, background and lights at any time; a material before
  * the first object, then it holds for every object up to the next material. A polygon is announced with its number of
- * points, then given point by point, then ended, so that no source needs a buffer for the largest one. Every function returns
- * ASET_OK or the error that the source then returns to its caller; after an error the entity in progress is forgotten.
+ * points, then given point by point, then ended, so that no source needs a buffer for the largest one. Every function
+ * returns ASET_OK or the error that the source then returns to its caller; after an error the entity in progress is
+ * forgotten.
  */
 typedef struct aset_sink {
     void *context; /* the first argument of every function */
@@ -56,8 +57,8 @@ typedef struct aset_counts {
 } aset_counts;
 
 /*
- * Real numbers that one object's shape takes in the scene: a polygon of more than three points keeps its normal, one of more than
- * eight its box too, which is quicker to look at than its edges.
+ * Real numbers that one object's shape takes in the scene: a polygon of more than three points keeps its normal, one of more
+ * than eight its box too, which is quicker to look at than its edges.
  */
 #define ASET_COORDINATES_POLYGON(n_points) (3u * (n_points) + ASET_OUTLINE_HEAD(n_points))
 #define ASET_COORDINATES_PATCH(n_points) (6u * (n_points) + ASET_OUTLINE_HEAD(n_points))
@@ -131,10 +132,11 @@ aset_sink aset_counter_sink(aset_counter *counter);
 aset_status aset_scene_init(aset_scene *scene, aset_arena *arena, const aset_counts *limits);
 
 /*
- * A sink that adds to the scene. Its functions return ASET_ERR_NOMEM where an entity exceeds the limits, ASET_ERR_GEOMETRY for
- * coordinates that are not finite or beyond 10^15 (10^150 in double), polygons of fewer than 3 points or of other than the announced number, spheres of radius
- * 0, cones without length, without any radius or with radii of different sign, and ASET_ERR_ARGUMENT for an object before any
- * material; the scene then is as before that entity. A polygon without area is kept, and no ray hits it.
+ * A sink that adds to the scene. Its functions return ASET_ERR_NOMEM where an entity exceeds the limits, ASET_ERR_GEOMETRY
+ * for coordinates that are not finite or beyond 10^15 (10^150 in double), polygons of fewer than 3 points or of other than
+ * the announced number, spheres of radius 0, cones without length, without any radius or with radii of different sign, and
+ * ASET_ERR_ARGUMENT for an object before any material; the scene then is as before that entity. A polygon without area is
+ * kept, and no ray hits it.
  */
 aset_sink aset_scene_sink(aset_scene *scene);
 

@@ -93,8 +93,8 @@ typedef struct aset_space_size {
      ASET_BYTES_PACKED(references, ASET_WIDTH(objects)))
 
 /*
- * Bytes of an MSET in the arena: a constant expression of the divisions and of what the measuring pass counts (`aset info` prints
- * them): non-empty blocks, references, objects.
+ * Bytes of an MSET in the arena: a constant expression of the divisions and of what the measuring pass counts (`aset info`
+ * prints them): non-empty blocks, references, objects.
  */
 #define ASET_BYTES_MSET(nx, ny, nz, blocks, references, objects)                                                       \
     ((size_t)(ASET_BYTES_CELLS(nx, ny, nz, 6u, blocks) + ASET_BYTES_REFERENCES(blocks, references, objects) +          \
@@ -128,8 +128,8 @@ typedef struct aset_space_size {
      ASET_BYTES_LEAVES(leaves, references, objects) + ASET_ROUND(4u * (size_t)(listed)))
 
 /*
- * Bytes of a summary of a space of so many non-empty cells with so many (at least 1) different textures (draft.h): the textures,
- * and for each cell the number of its own.
+ * Bytes of a summary of a space of so many non-empty cells with so many (at least 1) different textures (draft.h): the
+ * textures, and for each cell the number of its own.
  */
 #define ASET_BYTES_SUMMARY(cells, textures)                                                                            \
     (ASET_ROUND((size_t)(textures) * sizeof(aset_material)) +                                                          \
@@ -141,8 +141,8 @@ typedef struct aset_space_size {
 /* --- private fields, public so that you can hold them --- */
 
 /*
- * Slice k of axis a is the plane at low[a] + k width[a], but the first and the last are at first[a] and last[a], a little outside
- * the scene; or all are in planes[a] if there is a table.
+ * Slice k of axis a is the plane at low[a] + k width[a], but the first and the last are at first[a] and last[a], a little
+ * outside the scene; or all are in planes[a] if there is a table.
  */
 typedef struct aset_slices {
     const aset_real *planes[3];
@@ -201,25 +201,26 @@ typedef struct aset_space {
 /* --- end of private fields --- */
 
 /*
- * The divisions taken when none are given: the same number on every axis (the paper's "grid size"), 4 for each cube root of the
- * number of objects, at most 128; 1 on an axis a thousand times thinner than the widest; and so few that the map of blocks
- * alone does not take half of budget bytes (0: no such bound).
+ * The divisions taken when none are given: the same number on every axis (the paper's "grid size"), 4 for each cube root of
+ * the number of objects, at most 128; 1 on an axis a thousand times thinner than the widest; and so few that the map of
+ * blocks alone does not take half of budget bytes (0: no such bound).
  */
 void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisions[3]);
 
 /*
- * What aset_space_build will take from the arena for these options, exactly, without taking it. Counting works in the arena's free
- * bytes (nothing is accounted), or in a kilobyte of the stack if arena is NULL. Brute force, MSET and grid manage with any
- * scratch; the less there is, the more passes over the objects. The others need what they need while building: too little
- * of it is ASET_ERR_NOMEM, with arena->missing and size->scratch telling what would be enough for any scene of so many
- * objects. ASET_ERR_ARGUMENT: divisions, depth or leaf out of range; ASET_ERR_LIMIT: over 2^32 - 2 references.
+ * What aset_space_build will take from the arena for these options, exactly, without taking it. Counting works in the
+ * arena's free bytes (nothing is accounted), or in a kilobyte of the stack if arena is NULL. Brute force, MSET and grid
+ * manage with any scratch; the less there is, the more passes over the objects. The others need what they need while
+ * building: too little of it is ASET_ERR_NOMEM, with arena->missing and size->scratch telling what would be enough for any
+ * scene of so many objects. ASET_ERR_ARGUMENT: divisions, depth or leaf out of range; ASET_ERR_LIMIT: over 2^32 - 2
+ * references.
  */
 aset_status aset_space_measure(aset_space_size *size, const aset_scene *scene, const aset_method *method,
                                const aset_space_options *options, aset_arena *arena);
 
 /*
- * Builds a space over the scene, which must not change afterwards and must outlive it. options NULL: all defaults, and then the
- * automatic divisions go down until they fit. On ASET_ERR_NOMEM arena->missing is what was missing for the whole space,
+ * Builds a space over the scene, which must not change afterwards and must outlive it. options NULL: all defaults, and then
+ * the automatic divisions go down until they fit. On ASET_ERR_NOMEM arena->missing is what was missing for the whole space,
  * and arena and space are as before. Errors otherwise as aset_space_measure.
  */
 aset_status aset_space_build(aset_space *space, const aset_scene *scene, const aset_method *method,

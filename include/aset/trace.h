@@ -41,8 +41,8 @@ typedef struct aset_tracer {
 
 /*
  * The nearest hit of a ray: exact (on an object), or approximate (on the first cell with a texture that is met at t > 0).
- * *found says whether there is one; hit is written only then. An approximate query without a summary, a ray with a number that is
- * not finite (t_max may be INFINITY) or without direction: ASET_ERR_ARGUMENT. Adds to *statistics unless it is NULL.
+ * *found says whether there is one; hit is written only then. An approximate query without a summary, a ray with a number
+ * that is not finite (t_max may be INFINITY) or without direction: ASET_ERR_ARGUMENT. Adds to *statistics unless it is NULL.
  */
 aset_status aset_closest_hit(bool *found, aset_hit *hit, const aset_tracer *tracer, const aset_ray *ray,
                              bool approximate, aset_statistics *statistics);
@@ -68,14 +68,17 @@ typedef struct aset_scratch {
 /* Bytes in the arena of a scratch for rays of this depth. A ray leaves at most one other waiting on each level. */
 #define ASET_BYTES_SCRATCH(depth) ASET_ROUND((size_t)(depth) * sizeof(aset_waiting))
 
-/* Takes a scratch for chains of depth rays (0 means ASET_DEPTH_DEFAULT) from the arena. ASET_ERR_ARGUMENT: over ASET_DEPTH_MAX. */
+/*
+ * Takes a scratch for chains of depth rays (0 means ASET_DEPTH_DEFAULT) from the arena. ASET_ERR_ARGUMENT: over
+ * ASET_DEPTH_MAX.
+ */
 aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena *arena);
 
 /*
- * The colour that comes back along a ray, by Whitted's model (1980) as libaset defines it: 0.1 fill + for each unshadowed light
- * I (Kd fill (N.L) + Ks (R.V)^shine), + Ks times the reflected ray's + T times the refracted ray's colour; the background
- * where nothing is hit; no falloff. Not clamped. ray->t_max is not used. ASET_ERR_ARGUMENT as aset_closest_hit, and for a
- * scratch of less depth than the tracer's.
+ * The colour that comes back along a ray, by Whitted's model (1980) as libaset defines it: 0.1 fill + for each unshadowed
+ * light I (Kd fill (N.L) + Ks (R.V)^shine), + Ks times the reflected ray's + T times the refracted ray's colour; the
+ * background where nothing is hit; no falloff. Not clamped. ray->t_max is not used. ASET_ERR_ARGUMENT as aset_closest_hit,
+ * and for a scratch of less depth than the tracer's.
  */
 aset_status aset_ray_colour(aset_colour *colour, const aset_tracer *tracer, const aset_ray *ray, aset_scratch *scratch,
                             aset_statistics *statistics);
@@ -89,8 +92,8 @@ typedef enum aset_format { ASET_RGB888, ASET_RGBA8888, ASET_GREY8, ASET_RGB565 }
 size_t aset_format_bytes(aset_format format);
 
 /*
- * Where rows go. Row first_row of a call to aset_render_rows is written to pixels, each further row stride bytes behind: a whole
- * frame, or with stride 0 one row again and again, which on_row takes away.
+ * Where rows go. Row first_row of a call to aset_render_rows is written to pixels, each further row stride bytes behind: a
+ * whole frame, or with stride 0 one row again and again, which on_row takes away.
  */
 typedef struct aset_picture {
     uint32_t width, height; /* of the whole picture, up to 65535 each */

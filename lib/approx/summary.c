@@ -1,9 +1,9 @@
 /*
  * summary.c - one texture for each non-empty cell, made through the space's own listing of its cells: no space knows of it.
  *
- * Two passes over the cells: the first makes the list of textures, in the arena's free bytes where it will stay, and so tells how
- * many bits the number of a texture takes; the second writes each cell's number. Cells are looked at in the order of their
- * dense numbers, after averaging, so the list is the same whatever the order in which the objects were added.
+ * Two passes over the cells: the first makes the list of textures, in the arena's free bytes where it will stay, and so
+ * tells how many bits the number of a texture takes; the second writes each cell's number. Cells are looked at in the order
+ * of their dense numbers, after averaging, so the list is the same whatever the order in which the objects were added.
  */
 #include "approx/summary.h"
 
@@ -26,7 +26,10 @@ uint32_t aset_summary_capacity(const aset_scene *scene) {
     return capacity;
 }
 
-/* Averages met lately, by a hash of their sums' parts: most cells are like one seen before, and the list need not be searched. */
+/*
+ * Averages met lately, by a hash of their sums' parts: most cells are like one seen before, and the list need not be
+ * searched.
+ */
 #define RECENT 64u
 
 typedef struct filling {

@@ -5,7 +5,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* How many bits are set. The compiler's own way only where it is one instruction: else it would call its run-time library. */
+/*
+ * How many bits are set. The compiler's own way only where it is one instruction: else it would call its run-time library.
+ */
 static inline unsigned bits_count(uint64_t x) {
 #if defined(__GNUC__) && (defined(__POPCNT__) || defined(__aarch64__))
     return (unsigned)__builtin_popcountll(x);

@@ -2,10 +2,10 @@
  * real.c - power and tangent without libm.
  *
  * power: x^y = 2^(y log2 x). The logarithm splits x = m 2^e with m in [1/sqrt 2, sqrt 2) and sums the odd series of
- * 2 artanh((m - 1) / (m + 1)); with |argument| <= 0.1716 six terms leave less than 2^-33. The exponential sums Taylor's series on
- * [-1/2, 1/2] to the seventh power, below 2^-27. In float the product y log2 x is at most 150 before the result is 0, with
- * a relative error of a few u, so the result errs by less than 150 * 2^-22 relatively near 2^-150 and far less near 1: a
- * picture of 8 bits does not see it.
+ * 2 artanh((m - 1) / (m + 1)); with |argument| <= 0.1716 six terms leave less than 2^-33. The exponential sums Taylor's
+ * series on [-1/2, 1/2] to the seventh power, below 2^-27. In float the product y log2 x is at most 150 before the result is
+ * 0, with a relative error of a few u, so the result errs by less than 150 * 2^-22 relatively near 2^-150 and far less near
+ * 1: a picture of 8 bits does not see it.
  */
 #include "base/real.h"
 

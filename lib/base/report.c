@@ -1,6 +1,6 @@
 /*
- * report.c - formatting of statistics and memory; it counts nothing itself. Its own writing of numbers, since the core has no
- * stdio.
+ * report.c - formatting of statistics and memory; it counts nothing itself. Its own writing of numbers, since the core has
+ * no stdio.
  */
 #include "aset/report.h"
 

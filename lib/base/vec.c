@@ -1,6 +1,6 @@
 /*
- * vec.c - lengths and directions of vectors of any size: where the square of a component could leave the range of numbers, the
- * vector is scaled by its largest component first.
+ * vec.c - lengths and directions of vectors of any size: where the square of a component could leave the range of numbers,
+ * the vector is scaled by its largest component first.
  */
 #include "base/vec.h"
 

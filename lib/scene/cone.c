@@ -2,9 +2,9 @@
  * cone.c - truncated cones and cylinders with open ends.
  *
  * With the axis k from the base B, a point at height m along it lies on the surface if its distance from the axis is
- * r(m) = r0 + s m, s = (r1 - r0) / H, and 0 <= m <= H. Along the ray that is the quadratic a t^2 + 2 b t + c = 0, taken about
- * the ray's point nearest to the cone's middle, where its coefficients are of the cone's own size (the same remedy as for
- * spheres: Haines et al., Ray Tracing Gems 2019, chapter 7), and solved without cancellation.
+ * r(m) = r0 + s m, s = (r1 - r0) / H, and 0 <= m <= H. Along the ray that is the quadratic a t^2 + 2 b t + c = 0, taken
+ * about the ray's point nearest to the cone's middle, where its coefficients are of the cone's own size (the same remedy as
+ * for spheres: Haines et al., Ray Tracing Gems 2019, chapter 7), and solved without cancellation.
  */
 #include "scene/shape.h"
 

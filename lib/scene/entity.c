@@ -1,7 +1,10 @@
 /* entity.c - the checks of entities, in one place for all sinks. */
 #include "scene/entity.h"
 
-/* Where a point may be: so that products of two differences, the most that anything computes, stay within the range of numbers. */
+/*
+ * Where a point may be: so that products of two differences, the most that anything computes, stay within the range of
+ * numbers.
+ */
 #if ASET_REAL_BITS == 32
 #define COORDINATE_MAX R(1e15)
 #else

@@ -1,11 +1,11 @@
 /*
  * polygon.c - planar polygons of any number of vertices, concave too, and patches with normals at their vertices.
  *
- * Every vertex is moved to the ray's origin and sheared so that the ray runs along one axis (Woop, Benthin and Wald, "Watertight
- * Ray/Triangle Intersection", JCGT 2013); what is left is whether (0, 0) lies in a polygon of the plane. It does if a half
- * line along +x crosses an odd number of edges. An edge crosses if its ends lie on different sides of y = 0 (0 counts as
- * below) and its cross product, always taken from the lower to the upper end, is positive. Two polygons that share an
- * edge compute the same numbers for it, so they agree about it to the last bit: no ray slips between them.
+ * Every vertex is moved to the ray's origin and sheared so that the ray runs along one axis (Woop, Benthin and Wald,
+ * "Watertight Ray/Triangle Intersection", JCGT 2013); what is left is whether (0, 0) lies in a polygon of the plane. It does
+ * if a half line along +x crosses an odd number of edges. An edge crosses if its ends lie on different sides of y = 0 (0
+ * counts as below) and its cross product, always taken from the lower to the upper end, is positive. Two polygons that share
+ * an edge compute the same numbers for it, so they agree about it to the last bit: no ray slips between them.
  *
  *          . q (y > 0)                 cross(p, q) = p.x q.y - p.y q.x > 0
  *         /                            if the crossing is right of 0
@@ -186,8 +186,8 @@ aset_real polygon_nearest(const aset_real *at, uint32_t n, unsigned stride, cons
 #if ASET_WITH_PATCHES
 
 /*
- * Weights of the corners a, b, c at a point in their plane, by areas against the plane's normal; the smallest of them tells how
- * far inside the point is.
+ * Weights of the corners a, b, c at a point in their plane, by areas against the plane's normal; the smallest of them tells
+ * how far inside the point is.
  */
 static aset_real corner_weights(const aset_real *a, const aset_real *b, const aset_real *c, aset_vec3 normal,
                                 aset_vec3 point, aset_real weights[3]) {

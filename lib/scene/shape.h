@@ -21,9 +21,9 @@ enum { KIND_POLYGON, KIND_PATCH, KIND_SPHERE, KIND_CONE, KIND_BITS = 3 };
 enum { SIDE_FRONT = 1, SIDE_BACK = 2, SIDE_BOTH = 3 };
 
 /*
- * A ray made ready. Its direction is of unit length here. inverse is 1 / d, or 0 where |d| is so small (below 2^-60) that the ray
- * does not leave the margin of any box along that axis: there moves is false. axis and shear serve the polygons: the ray's
- * largest component comes last, and shearing by shear makes the ray run along it (Woop, Benthin and Wald 2013).
+ * A ray made ready. Its direction is of unit length here. inverse is 1 / d, or 0 where |d| is so small (below 2^-60) that
+ * the ray does not leave the margin of any box along that axis: there moves is false. axis and shear serve the polygons: the
+ * ray's largest component comes last, and shearing by shear makes the ray run along it (Woop, Benthin and Wald 2013).
  */
 typedef struct probe {
     aset_real origin[3], direction[3], inverse[3];
@@ -91,16 +91,17 @@ aset_vec3 cone_normal(const aset_real *at, aset_vec3 point);
 #endif
 
 /*
- * The nearest hit of the ray on one object, REAL_INFINITY without one or if it is certainly behind limit. The result is clamped to the ray's stay in the object's
- * box grown by scene->margin: so the point of every accepted hit lies in that box by construction, and a space
- * that puts the grown box into its cells visits one of them no later than the hit, whatever rounding did to t.
+ * The nearest hit of the ray on one object, REAL_INFINITY without one or if it is certainly behind limit. The result is
+ * clamped to the ray's stay in the object's box grown by scene->margin: so the point of every accepted hit lies in that box
+ * by construction, and a space that puts the grown box into its cells visits one of them no later than the hit, whatever
+ * rounding did to t.
  */
 aset_real object_nearest(const aset_scene *scene, uint32_t object, const probe *ray, aset_real limit);
 
 /*
- * How far boxes grow in a scene of these bounds: scene->margin. It must exceed the rounding of a side's t, 3 u of the distance
- * between origin and side, which query.c keeps within 1.1 scene sizes, or 3 u of the largest coordinate: so 4 u of both.
- * Spaces grow boxes by twice this, so that what the clamp keeps lies strictly inside.
+ * How far boxes grow in a scene of these bounds: scene->margin. It must exceed the rounding of a side's t, 3 u of the
+ * distance between origin and side, which query.c keeps within 1.1 scene sizes, or 3 u of the largest coordinate: so 4 u of
+ * both. Spaces grow boxes by twice this, so that what the clamp keeps lies strictly inside.
  */
 aset_real object_margin(aset_vec3 low, aset_vec3 high);
 

@@ -1,7 +1,7 @@
 /*
- * sphere.c - spheres, by the stable quadratic of Haines, Guenther and Akenine-Moeller ("Precision Improvements for Ray/Sphere
- * Intersection", Ray Tracing Gems 2019, chapter 7): the discriminant comes from the distance between the centre and the
- * ray's line, not from the difference of two large squares, and the smaller root from the product of both.
+ * sphere.c - spheres, by the stable quadratic of Haines, Guenther and Akenine-Moeller ("Precision Improvements for
+ * Ray/Sphere Intersection", Ray Tracing Gems 2019, chapter 7): the discriminant comes from the distance between the centre
+ * and the ray's line, not from the difference of two large squares, and the smaller root from the product of both.
  */
 #include "scene/shape.h"
 

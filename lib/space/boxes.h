@@ -1,8 +1,9 @@
 /*
  * boxes.h - every object's box of voxels, kept so that a walk can tell where its ray meets an object for the first time.
  *
- * Where several cells refer to one object, it is to be tested once for a ray, and no walk may write into the scene to remember
- * that. The ray's way enters a box of voxels at most once (slices.h); the cell in which it does is the one that tests.
+ * Where several cells refer to one object, it is to be tested once for a ray, and no walk may write into the scene to
+ * remember that. The ray's way enters a box of voxels at most once (slices.h); the cell in which it does is the one that
+ * tests.
  */
 #ifndef ASET_SPACE_BOXES_H
 #define ASET_SPACE_BOXES_H
@@ -23,8 +24,8 @@ static inline bool box_meets(const aset_box *box, const voxel_box *region) {
 }
 
 /*
- * Where a walk is: in a cell (a box of voxels) that it has entered at voxel, by a crossing of slices from before (unless is_first),
- * and will leave by the crossing (t_out, axis_out).
+ * Where a walk is: in a cell (a box of voxels) that it has entered at voxel, by a crossing of slices from before (unless
+ * is_first), and will leave by the crossing (t_out, axis_out).
  */
 typedef struct stay {
     int32_t voxel[3], before[3];

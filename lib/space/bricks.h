@@ -1,6 +1,6 @@
 /*
- * bricks.h - a ray among bricks of 4 x 4 x 4 voxels: every fourth slice, crossed in the same order as all of them, so that empty
- * bricks are left in one go. Serves the spaces that mark voxels in cells.h's blocks.
+ * bricks.h - a ray among bricks of 4 x 4 x 4 voxels: every fourth slice, crossed in the same order as all of them, so that
+ * empty bricks are left in one go. Serves the spaces that mark voxels in cells.h's blocks.
  */
 #ifndef ASET_SPACE_BRICKS_H
 #define ASET_SPACE_BRICKS_H
@@ -49,12 +49,14 @@ static inline bool brick_left(const dda *way) {
     return ((way->step[way->axis] > 0 ? k : ~k) & 3) == 0;
 }
 
-/* Brings way into the voxel in which the ray enters the brick that the last brick_step led into. The crossings passed over. */
+/*
+ * Brings way into the voxel in which the ray enters the brick that the last brick_step led into. The crossings passed over.
+ */
 uint32_t brick_land(const brick_walk *bricks, const aset_slices *slices, const probe *ray, dda *way);
 
 /*
- * The cells that a walk passed since the voxel last known, when it ended among bricks: out of the volume (inside is false), or in
- * a brick entered behind limit.
+ * The cells that a walk passed since the voxel last known, when it ended among bricks: out of the volume (inside is false),
+ * or in a brick entered behind limit.
  */
 uint32_t brick_count_rest(const aset_slices *slices, const probe *ray, dda *way, bool inside, aset_real limit);
 

@@ -1,16 +1,16 @@
 /*
  * cells.h - which cells are marked, and their dense numbers; the references of each.
  *
- * A cell is (voxel, face): MSET marks the cell side by which a ray would enter a voxel, so it has six faces a voxel (axis * 2,
- * + 1 for a ray going down); a grid has one. Marks are kept in blocks of 4 x 4 x 4 voxels of one face, and only blocks with
- * a mark exist:
+ * A cell is (voxel, face): MSET marks the cell side by which a ray would enter a voxel, so it has six faces a voxel (axis *
+ * 2, + 1 for a ray going down); a grid has one. Marks are kept in blocks of 4 x 4 x 4 voxels of one face, and only blocks
+ * with a mark exist:
  *
  *      map        0 1 0 0 1 1 0 ...   a bit for each block, in the order of bricks, then faces; a rank for each word of 64
  *                   |     | |
  *      marks        .     . .         64 bits for each non-empty block; first[]: the cells before it
  *
- * so a cell's dense number is first[block] + the marks below it, and finding it costs two counts of bits. An empty block costs
- * one bit, a non-empty one 12 bytes (16 with references), whatever the number of objects.
+ * so a cell's dense number is first[block] + the marks below it, and finding it costs two counts of bits. An empty block
+ * costs one bit, a non-empty one 12 bytes (16 with references), whatever the number of objects.
  *
  * The references of all cells follow one another in dense order: one bit a reference says where a cell's begin, and object
  * numbers are packed to the bits that the largest needs. (Counts in unary with ranks: Jacobson 1989.)
@@ -54,8 +54,8 @@ static inline voxel_box cells_face_box(const voxel_box *box, uint32_t face) {
 }
 
 /*
- * Counts what build would make: blocks, cells and references of every object's box of voxels, its six layers for faces = 6 or
- * the whole box for faces = 1. Works in scratch, a bitmap of as many blocks at a time as fit; at least 8 bytes.
+ * Counts what build would make: blocks, cells and references of every object's box of voxels, its six layers for faces = 6
+ * or the whole box for faces = 1. Works in scratch, a bitmap of as many blocks at a time as fit; at least 8 bytes.
  * ASET_ERR_LIMIT: more than 2^32 - 2 of any.
  */
 aset_status cells_measure(const aset_scene *scene, const aset_slices *slices, uint32_t faces, uint64_t *scratch,

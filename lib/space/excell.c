@@ -1,6 +1,6 @@
 /*
- * excell.c - EXCELL (Tamminen 1981): the volume is halved along x, y and z in turn until no region holds more than a bucket may; a
- * directory as fine as the finest region tells the bucket of every cell, so that finding it is one look.
+ * excell.c - EXCELL (Tamminen 1981): the volume is halved along x, y and z in turn until no region holds more than a bucket
+ * may; a directory as fine as the finest region tells the bucket of every cell, so that finding it is one look.
  *
  *      directory  +--+--+--+--+     a bucket of fewer halvings than the directory is shared by all the directory's cells in its
  *                 | 0  0| 1| 2|     region; the directory doubles with each halving of its finest bucket

@@ -1,6 +1,6 @@
 /*
- * grid.c - the uniform grid (Fujimoto, Tanaka and Iwata 1986; Amanatides and Woo 1987): every voxel refers to the objects whose boxes
- * touch it.
+ * grid.c - the uniform grid (Fujimoto, Tanaka and Iwata 1986; Amanatides and Woo 1987): every voxel refers to the objects
+ * whose boxes touch it.
  *
  *      +---+---+---+---+       an object stands in every voxel of its box, so its references grow with its volume where MSET's
  *      |   | a | a |   |       grow with its surface. A ray meets it first in the voxel by which the ray's way enters the box:

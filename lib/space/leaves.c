@@ -68,7 +68,8 @@ void leaves_go(const aset_space *space, const probe *ray, walk_request *walk, le
             cell.face = way.axis < 0 ? FACE_NONE : way.axis * 2 + (way.step[way.axis] < 0);
             cell.n = 0;
             if (walk->wants_references) {
-                visit_leaf(space, ray, walk, &s, space->references.first[l.cell], space->references.first[l.cell + 1], &cell);
+                const uint32_t *first = space->references.first + l.cell;
+                visit_leaf(space, ray, walk, &s, first[0], first[1], &cell);
             } else {
                 walk->limit = walk->visit(walk, &cell);
             }

@@ -1,6 +1,6 @@
 /*
- * leaves.h - the walk that octree, ARTS and EXCELL share: from leaf to leaf of a subdivision by halving, whose leaves are boxes of
- * the voxels of its finest level.
+ * leaves.h - the walk that octree, ARTS and EXCELL share: from leaf to leaf of a subdivision by halving, whose leaves are
+ * boxes of the voxels of its finest level.
  */
 #ifndef ASET_SPACE_LEAVES_H
 #define ASET_SPACE_LEAVES_H
@@ -17,8 +17,8 @@ typedef struct leaf {
 typedef leaf (*leaf_find)(const aset_space *space, const int32_t voxel[3]);
 
 /*
- * Walks. by_steps: the next leaf is found by crossing the finest level's slices one by one (ARTS); else by going straight to the
- * crossing that leaves the leaf (Glassner's next point).
+ * Walks. by_steps: the next leaf is found by crossing the finest level's slices one by one (ARTS); else by going straight to
+ * the crossing that leaves the leaf (Glassner's next point).
  */
 void leaves_go(const aset_space *space, const probe *ray, walk_request *walk, leaf_find find, bool by_steps);
 
@@ -31,8 +31,8 @@ void leaves_reserve(aset_space *space, const aset_space_size *size, aset_arena *
 /* --- building by halving --- */
 
 /*
- * A region is halved while it holds more than leaf objects and is above the depth: along all axes at once (octree), or along x, y,
- * z in turn (EXCELL). Every leaf is told with its objects, in the order of their numbers.
+ * A region is halved while it holds more than leaf objects and is above the depth: along all axes at once (octree), or along
+ * x, y, z in turn (EXCELL). Every leaf is told with its objects, in the order of their numbers.
  */
 typedef struct halving {
     const aset_box *boxes;

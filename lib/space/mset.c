@@ -1,6 +1,6 @@
 /*
- * mset.c - the modified slicing extent technique (Logan 1989; Dauenhauer and Semwal 1990): marked cell sides (sides.c) of equally
- * spaced slices, whose number is bounded and whose crossings need no search.
+ * mset.c - the modified slicing extent technique (Logan 1989; Dauenhauer and Semwal 1990): marked cell sides (sides.c) of
+ * equally spaced slices, whose number is bounded and whose crossings need no search.
  */
 #include "space/sides.h"
 

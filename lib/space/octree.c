@@ -1,6 +1,6 @@
 /*
- * octree.c - the octree (Glassner 1984): from a leaf the ray goes to the next point behind the leaf's wall, and the leaf that holds
- * it is found by descending from the root.
+ * octree.c - the octree (Glassner 1984): from a leaf the ray goes to the next point behind the leaf's wall, and the leaf
+ * that holds it is found by descending from the root.
  *
  *      +-------+---+---+
  *      |       |   |   |      a leaf may be as large as the half of the volume: empty space is crossed in one step,

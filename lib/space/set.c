@@ -1,6 +1,6 @@
 /*
- * set.c - the slicing extent technique (Semwal 1987): marked cell sides (sides.c) of slices that stand where the objects' extents
- * are, in sorted order, so that every box fits its slices exactly.
+ * set.c - the slicing extent technique (Semwal 1987): marked cell sides (sides.c) of slices that stand where the objects'
+ * extents are, in sorted order, so that every box fits its slices exactly.
  *
  *      |  |  |     |   |            |        each object puts a slice at either end of its box on each axis; shared ends
  *      |  +--|-----|---+            |        share a slice. Slices grow with the objects, and cells with their cube:
@@ -60,11 +60,11 @@ static size_t collect_extents(aset_real *extents, const aset_scene *scene, int a
 }
 
 /*
- * The slices of one axis into planes: the volume's two ends and up to cap - 1 extents between them. The number of voxels; *merged
- * grows by the extents that got no slice of their own.
+ * The slices of one axis into planes: the volume's two ends and up to cap - 1 extents between them. The number of voxels;
+ * *merged grows by the extents that got no slice of their own.
  */
-static uint32_t choose_planes(aset_real *planes, aset_real *extents, const aset_scene *scene, const aset_slices *volume, int a,
-                              uint32_t cap, uint64_t *merged) {
+static uint32_t choose_planes(aset_real *planes, aset_real *extents, const aset_scene *scene, const aset_slices *volume,
+                              int a, uint32_t cap, uint64_t *merged) {
     size_t n = collect_extents(extents, scene, a), kept = n < cap ? n : cap - 1;
     uint32_t n_planes = 0;
     planes[n_planes++] = slices_plane(volume, a, 0);

@@ -13,12 +13,12 @@
  * An up side of slice k is the way into voxel k, a down side of slice k the way into voxel k - 1: a side is kept as (voxel,
  * face of entry). The up sides of the last slice and the down sides of the first are never marked.
  *
- * Rays that start inside: an object whose box holds the origin's voxel is never entered from there. Instead of lists for every
- * voxel (bytes in proportion to the objects' volumes) the ray's line is walked from a little before its origin: boxes span at
- * most reach voxels, so a box that holds the origin's voxel lies in the window of reach - 1 voxels around it, and the
- * line enters it there, before t = 0. The few boxes that are much larger than the others would make that window the
- * whole scene; these, at most ASET_LARGE_MAX, are kept in a list with their voxels, tested first if they hold the
- * origin's voxel, and passed over when the backward part of the walk meets them.
+ * Rays that start inside: an object whose box holds the origin's voxel is never entered from there. Instead of lists for
+ * every voxel (bytes in proportion to the objects' volumes) the ray's line is walked from a little before its origin: boxes
+ * span at most reach voxels, so a box that holds the origin's voxel lies in the window of reach - 1 voxels around it, and
+ * the line enters it there, before t = 0. The few boxes that are much larger than the others would make that window the
+ * whole scene; these, at most ASET_LARGE_MAX, are kept in a list with their voxels, tested first if they hold the origin's
+ * voxel, and passed over when the backward part of the walk meets them.
  */
 #include "space/sides.h"
 
@@ -54,8 +54,8 @@ static uint32_t smallest_of(const uint32_t *spans, uint32_t n) {
 }
 
 /*
- * Finds the largest boxes and the reach of the rest. A box that is no larger than that reach would gain nothing by being listed,
- * and is dropped again.
+ * Finds the largest boxes and the reach of the rest. A box that is no larger than that reach would gain nothing by being
+ * listed, and is dropped again.
  */
 static void find_large(aset_space *space) {
     uint32_t spans[ASET_LARGE_MAX], objects[ASET_LARGE_MAX], n = 0, rest = 1;
@@ -225,10 +225,10 @@ static aset_real visit_side(const aset_space *space, walk_request *walk, const d
 }
 
 /*
- * The walk. It goes from brick to brick of 4 x 4 x 4 voxels. A brick without a mark on the three faces that this ray can enter by
- * costs one crossing and one look at the map; only in the others are voxels stepped through, each with one crossing and the
- * test of one bit of the marks at hand. Both levels cross slices in the same order, so this is the plain walk voxel by
- * voxel, with the empty part left out (tests/test_space.c walks the plain way beside it).
+ * The walk. It goes from brick to brick of 4 x 4 x 4 voxels. A brick without a mark on the three faces that this ray can
+ * enter by costs one crossing and one look at the map; only in the others are voxels stepped through, each with one crossing
+ * and the test of one bit of the marks at hand. Both levels cross slices in the same order, so this is the plain walk voxel
+ * by voxel, with the empty part left out (tests/test_space.c walks the plain way beside it).
  */
 void sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
     const aset_cells *cells = &space->cells;

@@ -2,10 +2,11 @@
 #include "space/slices.h"
 
 /*
- * In margins of objects, whose boxes grow by two of them on each side: how far the outermost slices lie outside the scene, and by how
- * much the inner ones lie before the places that equal division gives. Where objects end in such a place (a ground, storeys,
- * symmetric scenes) the slice passes before them by more than they grow: a flat object stays one voxel thick, and a box
- * that begins or ends at the place belongs to the voxel behind it, as floor() of the bare numbers would have it.
+ * In margins of objects, whose boxes grow by two of them on each side: how far the outermost slices lie outside the scene,
+ * and by how much the inner ones lie before the places that equal division gives. Where objects end in such a place (a
+ * ground, storeys, symmetric scenes) the slice passes before them by more than they grow: a flat object stays one voxel
+ * thick, and a box that begins or ends at the place belongs to the voxel behind it, as floor() of the bare numbers would
+ * have it.
  */
 #define OUTSIDE 8
 #define BEFORE 4
@@ -96,8 +97,8 @@ static bool crossed(const aset_slices *slices, const probe *ray, int b, int32_t 
 }
 
 /*
- * The voxel number of axis b after all crossings before (t, axis), within the window; false if the ray has left the window by
- * then. The position guesses, the order of crossings decides.
+ * The voxel number of axis b after all crossings before (t, axis), within the window; false if the ray has left the window
+ * by then. The position guesses, the order of crossings decides.
  */
 static bool settle(const aset_slices *slices, const probe *ray, int b, aset_real t, int axis, const voxel_box *window,
                    int32_t *voxel) {

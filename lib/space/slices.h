@@ -68,15 +68,17 @@ static inline aset_real dda_crossing(const aset_slices *slices, const probe *ray
 }
 
 /*
- * Puts the walk at the ray's entry into the window (a box of voxels within the volume), wherever on the ray's line that is: the
- * last crossing is the window's face. False if the line misses the window or leaves it before t = 0.
+ * Puts the walk at the ray's entry into the window (a box of voxels within the volume), wherever on the ray's line that is:
+ * the last crossing is the window's face. False if the line misses the window or leaves it before t = 0.
  */
 bool dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window);
 
 /* Puts the walk into the voxel of the ray's origin, before any crossing. False if the origin is outside the volume. */
 bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray);
 
-/* Crosses the next slice of axis a, which is a constant where this is called: so the walk's numbers can stay in registers. */
+/*
+ * Crosses the next slice of axis a, which is a constant where this is called: so the walk's numbers can stay in registers.
+ */
 static inline bool dda_cross(dda *walk, const aset_slices *slices, const probe *ray, int a) {
     walk->t = walk->next[a];
     walk->axis = a;
@@ -97,9 +99,9 @@ static inline bool dda_step(dda *walk, const aset_slices *slices, const probe *r
 }
 
 /*
- * Brings the walk to where the ray is after all crossings up to the walk's own t and axis, which must lie in the window (a box of
- * voxels that the ray enters by that crossing, or axis = 3: after all crossings not behind t). The number of crossings that
- * the walk had not made yet.
+ * Brings the walk to where the ray is after all crossings up to the walk's own t and axis, which must lie in the window (a
+ * box of voxels that the ray enters by that crossing, or axis = 3: after all crossings not behind t). The number of
+ * crossings that the walk had not made yet.
  */
 uint32_t dda_land(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window);
 

@@ -42,8 +42,8 @@ struct aset_method {
     const char *name;
     bool by_depth; /* sized by depth and leaf (trees), not by divisions */
     /*
-     * size->divisions or depth and leaf are given; fills the rest. scratch as in aset_space_measure, never NULL. ASET_ERR_NOMEM:
-     * the scratch is too small; size->scratch bytes would do.
+     * size->divisions or depth and leaf are given; fills the rest. scratch as in aset_space_measure, never NULL.
+     * ASET_ERR_NOMEM: the scratch is too small; size->scratch bytes would do.
      */
     aset_status (*measure)(aset_space_size *size, const aset_scene *scene, uint64_t *scratch, size_t scratch_bytes);
     /* the arena holds size->total bytes; scene, method and divisions are set in space */

@@ -1,5 +1,6 @@
 /*
- * shade.c - Whitted's model (1980): ambient, diffuse, Phong's highlight, shadows, directions of reflected and refracted rays.
+ * shade.c - Whitted's model (1980): ambient, diffuse, Phong's highlight, shadows, directions of reflected and refracted
+ * rays.
  *
  * New rays start off the surface by nudge along its geometric normal. The point of a hit errs by a few units in the last
  * place of the numbers it is made of, |point| and t, so the nudge is NUDGE of those: no length in scene units.

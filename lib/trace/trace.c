@@ -1,9 +1,10 @@
 /*
  * trace.c - the tree of rays behind an eye ray, with an explicit stack.
  *
- * Every ray carries the weight with which its colour counts in the pixel, so a colour is a plain sum over the rays and nothing
- * has to come back up. A ray is taken off the stack and leaves at most two new ones, one level deeper, of which one is taken
- * next: so at most one waits on each level, and depth entries suffice (2 on the deepest level but one, 1 on each above).
+ * Every ray carries the weight with which its colour counts in the pixel, so a colour is a plain sum over the rays and
+ * nothing has to come back up. A ray is taken off the stack and leaves at most two new ones, one level deeper, of which one
+ * is taken next: so at most one waits on each level, and depth entries suffice (2 on the deepest level but one, 1 on each
+ * above).
  */
 #include "trace/trace_tree.h"
 
