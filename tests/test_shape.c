@@ -203,7 +203,7 @@ static void compare_kind(unsigned kind, uint64_t first_seed) {
         model_free(&m);
     }
     assert_true(sum.undecided * 12 <= sum.n); /* else this test says nothing */
-    assert_true(sum.hits * 8 >= sum.n);
+    assert_true(sum.hits * 12 >= sum.n);
 }
 
 static void test_shape__polygons_agree_with_double(void **state) {

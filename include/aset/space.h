@@ -52,8 +52,9 @@ typedef struct aset_structure {
 /* The bytes of a space, by category, and the counts that they follow from. */
 typedef struct aset_space_size {
     size_t cells, references, voxels;
-    size_t scratch; /* given back when the space is built */
-    size_t total;   /* of all these: the arena's need while building */
+    size_t scratch; /* while building only */
+    size_t reused;  /* of it, what cells, references and voxels take afterwards (SET) */
+    size_t total;   /* the arena's need while building: all of these, what is reused counted once */
     uint32_t divisions[3];
     uint32_t n_cells;      /* non-empty cells (MSET, SET: cell sides) */
     uint32_t n_references;
@@ -100,11 +101,12 @@ typedef struct aset_space_size {
     ((size_t)(ASET_BYTES_CELLS(nx, ny, nz, 6u, blocks) + ASET_BYTES_REFERENCES(blocks, references, objects) +          \
               ASET_ROUND(ASET_LARGE_MAX * sizeof(aset_large))))
 
-/* SET: the table of slices besides, and while it is built both ends of every object. */
+/* SET: the table of slices besides; before the marks take that place, both ends of every object. */
 #define ASET_BYTES_SET(nx, ny, nz, blocks, references, objects)                                                        \
-    (ASET_BYTES_MSET(nx, ny, nz, blocks, references, objects) +                                                        \
-     ASET_ROUND(((size_t)(nx) + (ny) + (nz) + 3u) * sizeof(aset_real)) +                                               \
-     ASET_ROUND(2u * (size_t)(objects) * sizeof(aset_real)))
+    (ASET_ROUND(((size_t)(nx) + (ny) + (nz) + 3u) * sizeof(aset_real)) +                                               \
+     (ASET_BYTES_MSET(nx, ny, nz, blocks, references, objects) > ASET_ROUND(2u * (size_t)(objects) * sizeof(aset_real)) \
+          ? ASET_BYTES_MSET(nx, ny, nz, blocks, references, objects)                                                   \
+          : ASET_ROUND(2u * (size_t)(objects) * sizeof(aset_real))))
 
 /* Grid: blocks and references of voxels, and every object's box. */
 #define ASET_BYTES_GRID(nx, ny, nz, blocks, references, objects)                                                       \
@@ -201,9 +203,10 @@ typedef struct aset_space {
 /* --- end of private fields --- */
 
 /*
- * The divisions taken when none are given: the same number on every axis (the paper's "grid size"), 4 for each cube root of
- * the number of objects, at most 128; 1 on an axis a thousand times thinner than the widest; and so few that the map of
- * blocks alone does not take half of budget bytes (0: no such bound).
+ * The divisions taken when none are given: cubic voxels, 64 for each object in the scene's box (the rule of Lagae and Dutre 2008,
+ * M_a = S_a cbrt(rho N / V), with rho = 64, chosen by measurement: DESIGN.md), at most 512 an axis; an axis a thousand times
+ * thinner than the widest counts as that thick and gets one division; and so few that MSET's map of blocks alone does not
+ * take half of budget bytes (0: no such bound).
  */
 void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisions[3]);
 
@@ -220,8 +223,9 @@ aset_status aset_space_measure(aset_space_size *size, const aset_scene *scene, c
 
 /*
  * Builds a space over the scene, which must not change afterwards and must outlive it. options NULL: all defaults, and then
- * the automatic divisions go down until they fit. On ASET_ERR_NOMEM arena->missing is what was missing for the whole space,
- * and arena and space are as before. Errors otherwise as aset_space_measure.
+ * the automatic divisions go down until they fit. On ASET_ERR_NOMEM arena->missing is what was missing for the whole space
+ * (brute force, MSET, grid), or at least for finding that out (the others): so with that much more, the next try builds or
+ * tells the rest. Arena and space are as before. Errors otherwise as aset_space_measure.
  */
 aset_status aset_space_build(aset_space *space, const aset_scene *scene, const aset_method *method,
                              const aset_space_options *options, aset_arena *arena);

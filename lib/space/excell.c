@@ -104,7 +104,7 @@ static aset_status excell_measure(aset_space_size *size, const aset_scene *scene
     finest[0] = finest[1] = finest[2] = 1u << size->depth;
     slices_make(&slices, scene, finest);
     size_t boxes_bytes = ASET_ROUND((size_t)n * sizeof(aset_box));
-    size->scratch = boxes_bytes + (size_t)n * 4 * (3 * size->depth + 1);
+    size->scratch = boxes_bytes + ASET_ROUND((size_t)n * 4 * (3 * size->depth + 1));
     if (scratch_bytes < boxes_bytes) {
         return ASET_ERR_NOMEM;
     }

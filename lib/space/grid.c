@@ -58,6 +58,7 @@ static aset_real visit_voxel(const aset_space *space, walk_request *walk, const 
         if (cell.n == WALK_BATCH || (!more && cell.n > 0)) {
             walk->limit = walk->visit(walk, &cell);
             cell.n = 0;
+            more = more && walk->limit > -REAL_INFINITY; /* which ends the walk, within a cell too */
         }
     }
     return walk->limit;

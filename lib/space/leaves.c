@@ -16,6 +16,9 @@ static void visit_leaf(const aset_space *space, const probe *ray, walk_request *
         if (cell->n == WALK_BATCH || (at + 1 == end && cell->n > 0)) {
             walk->limit = walk->visit(walk, cell);
             cell->n = 0;
+            if (!(walk->limit > -REAL_INFINITY)) {
+                return; /* the end of the walk, within a cell too */
+            }
         }
     }
 }

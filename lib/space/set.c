@@ -60,68 +60,93 @@ static size_t collect_extents(aset_real *extents, const aset_scene *scene, int a
 }
 
 /*
- * The slices of one axis into planes: the volume's two ends and up to cap - 1 extents between them. The number of voxels;
- * *merged grows by the extents that got no slice of their own.
+ * The slices of one axis into planes, which have room for so many numbers: the volume's two ends and up to cap - 1 extents
+ * between them. The number of voxels, 0 if there is no room; *merged grows by the extents that got no slice of their own.
  */
-static uint32_t choose_planes(aset_real *planes, aset_real *extents, const aset_scene *scene, const aset_slices *volume,
-                              int a, uint32_t cap, uint64_t *merged) {
+static uint32_t choose_planes(aset_real *planes, size_t room, aset_real *extents, const aset_scene *scene,
+                              const aset_slices *volume, int a, uint32_t cap, uint64_t *merged) {
     size_t n = collect_extents(extents, scene, a), kept = n < cap ? n : cap - 1;
+    aset_real last = volume->first[a];
     uint32_t n_planes = 0;
-    planes[n_planes++] = slices_plane(volume, a, 0);
-    for (size_t i = 0; i < kept; i++) {
-        aset_real x = kept == n ? extents[i] : extents[(2 * i + 1) * n / (2 * kept)];
-        if (x > planes[n_planes - 1] && x < slices_plane(volume, a, 1)) {
-            planes[n_planes++] = x;
+    for (size_t i = 0; i < kept + 2; i++) {
+        bool is_end = i == 0 || i == kept + 1;
+        size_t k = kept == n ? i - 1 : (2 * i - 1) * n / (2 * kept);
+        aset_real x = i == 0 ? volume->first[a] : is_end ? volume->last[a] : extents[k];
+        if (!is_end && (x <= last || x >= volume->last[a])) {
+            continue;
         }
+        if (n_planes == room) {
+            return 0;
+        }
+        planes[n_planes++] = last = x;
     }
-    planes[n_planes] = slices_plane(volume, a, 1);
     *merged += n - kept;
-    return n_planes;
+    return n_planes - 1;
 }
 
-/* The slices of all axes; planes has room for three times cap + 1 numbers, extents for twice the objects. */
-static uint64_t make_slices(aset_slices *slices, const aset_scene *scene, const uint32_t caps[3], aset_real *planes,
-                            aset_real *extents) {
+/* The slices of all axes, one axis' planes behind the other's. False: there is no room. */
+static bool make_slices(aset_slices *slices, const aset_scene *scene, const uint32_t caps[3], aset_real *planes, size_t room,
+                        aset_real *extents, uint64_t *merged) {
     const uint32_t one[3] = {1, 1, 1};
     aset_slices volume;
-    uint64_t merged = 0;
     slices_make(&volume, scene, one);
     *slices = volume;
+    *merged = 0;
     for (int a = 0; a < 3; a++) {
+        uint32_t n = choose_planes(planes, room, extents, scene, &volume, a, caps[a], merged);
+        if (n == 0) {
+            return false;
+        }
         slices->planes[a] = planes;
-        slices->n[a] = choose_planes(planes, extents, scene, &volume, a, caps[a], &merged);
-        slices->width[a] = volume.width[a] / (aset_real)slices->n[a]; /* on average: the voxel of footnote 8 */
-        planes += slices->n[a] + 1;
+        slices->n[a] = n;
+        slices->width[a] = volume.width[a] / (aset_real)n; /* on average: the voxel of footnote 8 */
+        planes += n + 1;
+        room -= n + 1;
     }
-    return merged;
+    return true;
 }
 
 static size_t planes_bytes(const uint32_t n[3]) {
     return ASET_ROUND(((size_t)n[0] + n[1] + n[2] + 3) * sizeof(aset_real));
 }
 
+static size_t extents_bytes(const aset_scene *scene) {
+    return ASET_ROUND(2 * (size_t)scene->counts.objects * sizeof(aset_real));
+}
+
+/*
+ * Extents first, planes behind them; the marks are then counted where the extents were, or behind the planes if there is more
+ * room. So measuring needs no more than building, which has the extents only until the slices are made.
+ */
 static aset_status set_measure(aset_space_size *size, const aset_scene *scene, uint64_t *scratch, size_t scratch_bytes) {
     aset_slices slices;
-    size_t room = planes_bytes(size->divisions), extents = ASET_ROUND(2 * scene->counts.objects * sizeof(aset_real));
-    size->scratch = room + extents;
-    if (scratch_bytes < room + extents + 8) {
+    uint64_t merged;
+    size_t extents = extents_bytes(scene), room = scratch_bytes > extents ? scratch_bytes - extents : 0;
+    memcpy(size->caps, size->divisions, sizeof size->caps);
+    size->scratch = extents + planes_bytes(size->caps);
+    uint64_t *planes = scratch + extents / 8;
+    if (room == 0 || !make_slices(&slices, scene, size->caps, (aset_real *)(void *)planes, room / sizeof(aset_real),
+                                  (aset_real *)(void *)scratch, &merged)) {
         return ASET_ERR_NOMEM;
     }
-    memcpy(size->caps, size->divisions, sizeof size->caps);
-    (void)make_slices(&slices, scene, size->caps, (aset_real *)(void *)scratch, (aset_real *)(void *)(scratch + room / 8));
     memcpy(size->divisions, slices.n, sizeof size->divisions);
-    aset_status status = sides_measure(size, scene, &slices, scratch + room / 8, scratch_bytes - room);
     size->planes = planes_bytes(size->divisions);
+    size_t behind = room > size->planes ? room - size->planes : 0;
+    aset_status status = behind > extents ? sides_measure(size, scene, &slices, planes + size->planes / 8, behind)
+                                          : sides_measure(size, scene, &slices, scratch, extents);
+    size_t sides = size->cells + size->references + size->voxels;
     size->cells += size->planes;
     size->scratch = extents;
+    size->reused = extents < sides ? extents : sides; /* the sides take the extents' place */
     return status;
 }
 
 static void set_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
     aset_real *planes = aset_arena_alloc(arena, size->planes, ASET_CATEGORY_CELLS);
     aset_mark mark = aset_arena_mark(arena);
-    aset_real *extents = aset_arena_alloc(arena, size->scratch, ASET_CATEGORY_SCRATCH);
-    space->structure.merged = make_slices(&space->slices, space->scene, size->caps, planes, extents);
+    aset_real *extents = aset_arena_alloc(arena, extents_bytes(space->scene), ASET_CATEGORY_SCRATCH);
+    (void)make_slices(&space->slices, space->scene, size->caps, planes, size->planes / sizeof(aset_real), extents,
+                      &space->structure.merged);
     aset_arena_release(arena, &mark);
     sides_build(space, size, arena);
 }

@@ -153,6 +153,7 @@ static aset_real visit_cell(const aset_space *space, walk_request *walk, walk_ce
         } while (more && cell->n < WALK_BATCH);
         if (cell->n > 0) {
             limit = walk->visit(walk, cell);
+            more = more && limit > -REAL_INFINITY; /* which ends the walk, within a cell too */
         }
     }
     return limit;

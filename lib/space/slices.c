@@ -23,12 +23,9 @@ void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t di
         slices->planes[a] = NULL;
         slices->first[a] = from - OUTSIDE * margin;
         slices->last[a] = to + OUTSIDE * margin;
-        if (to - from < OUTSIDE * margin) { /* a flat scene is divided as if it were not quite */
-            from = slices->first[a];
-            to = slices->last[a];
-        }
-        slices->width[a] = (to - from) / (aset_real)divisions[a];
-        slices->low[a] = from - BEFORE * margin;
+        bool is_flat = to - from < OUTSIDE * margin; /* it is divided as if it were not quite */
+        slices->low[a] = is_flat ? slices->first[a] : from - BEFORE * margin;
+        slices->width[a] = (is_flat ? slices->last[a] - slices->first[a] : to - from) / (aset_real)divisions[a];
         slices->per_width[a] = 1 / slices->width[a];
     }
 }
@@ -200,6 +197,9 @@ uint32_t dda_land(dda *walk, const aset_slices *slices, const probe *ray, const 
             walk->voxel[a] = walk->step[a] > 0 ? window->low[a] : window->high[a];
         } else {
             (void)settle(slices, ray, a, walk->t, walk->axis, window, &walk->voxel[a]);
+            if ((walk->voxel[a] - before) * walk->step[a] < 0) {
+                walk->voxel[a] = before; /* a walk that began on a slice counts it as crossed at t = 0, and never goes back */
+            }
         }
         walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (walk->step[a] > 0));
         crossings += (walk->voxel[a] - before) * walk->step[a];

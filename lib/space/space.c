@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-#define AUTO_DIVISIONS 4
-#define AUTO_DIVISIONS_MAX 128
+#define AUTO_DENSITY 64
+#define AUTO_DIVISIONS_MAX 512
 #define AUTO_THIN R(0.001)
 #define AUTO_DEPTH 6
 #define STACK_SCRATCH_WORDS 128 /* a kilobyte */
@@ -28,13 +28,21 @@ void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisi
     aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
     aset_scene_bounds(scene, &low, &high);
     aset_vec3 span = vec_sub(high, low);
-    aset_real wanted = AUTO_DIVISIONS * cube_root(real_max((aset_real)scene->counts.objects, 1));
-    uint32_t n = wanted > AUTO_DIVISIONS_MAX ? AUTO_DIVISIONS_MAX : (uint32_t)(wanted + R(0.5));
-    while (budget > 0 && n > 1 && 12 * ASET_BLOCK_WORDS(n, n, n, 6u) > budget / 2) {
-        n -= (n + 7) / 8; /* MSET's map of blocks alone would take half of it */
+    aset_real largest = vec_largest(span), sides[3] = {1, 1, 1}, volume = 1;
+    for (int a = 0; a < 3 && largest > 0; a++) { /* relative to the largest, so that no product leaves the range */
+        sides[a] = real_max(vec_at(&span, a) / largest, AUTO_THIN);
+        volume *= sides[a];
     }
+    aset_real per_side = cube_root(AUTO_DENSITY * real_max((aset_real)scene->counts.objects, 1) / volume);
     for (int a = 0; a < 3; a++) {
-        divisions[a] = vec_at(&span, a) > AUTO_THIN * vec_largest(span) ? n : 1;
+        aset_real n = sides[a] > AUTO_THIN ? sides[a] * per_side + R(0.5) : 1;
+        divisions[a] = n < 1 ? 1 : n > AUTO_DIVISIONS_MAX ? AUTO_DIVISIONS_MAX : (uint32_t)n;
+    }
+    while (budget > 0 && 12 * ASET_BLOCK_WORDS(divisions[0], divisions[1], divisions[2], 6u) > budget / 2 &&
+           (divisions[0] > 1 || divisions[1] > 1 || divisions[2] > 1)) {
+        for (int a = 0; a < 3; a++) { /* MSET's map of blocks alone would take half of it */
+            divisions[a] -= divisions[a] > 1 ? (divisions[a] + 7) / 8 : 0;
+        }
     }
 }
 
@@ -71,7 +79,7 @@ static aset_status measure_with(aset_space_size *size, const aset_scene *scene, 
         left > sizeof words
             ? method->measure(size, scene, (uint64_t *)(void *)(arena->block + arena->used), left)
             : method->measure(size, scene, words, sizeof words);
-    size->total = size->cells + size->references + size->voxels + size->scratch;
+    size->total = size->cells + size->references + size->voxels + size->scratch - size->reused;
     if (status == ASET_ERR_NOMEM && arena != NULL) {
         arena->missing = size->scratch > left ? size->scratch - left : 8;
     }

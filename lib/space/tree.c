@@ -79,7 +79,7 @@ aset_status tree_measure(aset_space_size *size, const aset_scene *scene, uint64_
     size->divisions[0] = size->divisions[1] = size->divisions[2] = 1u << size->depth;
     slices_make(&slices, scene, size->divisions);
     size_t boxes_bytes = ASET_ROUND((size_t)n * sizeof(aset_box));
-    size->scratch = boxes_bytes + (size_t)n * 4 * (size->depth + 1); /* enough for any scene */
+    size->scratch = boxes_bytes + ASET_ROUND((size_t)n * 4 * (size->depth + 1)); /* enough for any scene */
     if (scratch_bytes < boxes_bytes) {
         return ASET_ERR_NOMEM;
     }

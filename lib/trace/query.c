@@ -125,7 +125,17 @@ static aset_real make_ready(probe *ray, const aset_scene *scene, aset_vec3 origi
     aset_vec3 low, high;
     aset_real t_in, t_out;
     *ray = probe_make(origin, direction);
-    if (!aset_scene_bounds(scene, &low, &high) || !probe_box(ray, low, high, &t_in, &t_out)) {
+    if (!aset_scene_bounds(scene, &low, &high)) {
+        return 0;
+    }
+    /*
+     * The box is grown by more than any object's, and by the rounding of its sides' t from here: a ray that misses it is
+     * refused by the clamp of every object too.
+     */
+    aset_real away = real_max(vec_largest(vec_sub(low, origin)), vec_largest(vec_sub(high, origin)));
+    aset_real grown = 4 * scene->margin + 4 * REAL_UNIT * away;
+    aset_vec3 margin = vec(grown, grown, grown);
+    if (!probe_box(ray, vec_sub(low, margin), vec_add(high, margin), &t_in, &t_out)) {
         return 0;
     }
     aset_real moved = t_in - NEAR * vec_largest(vec_sub(high, low));
