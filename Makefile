@@ -32,7 +32,8 @@ LOAD := $(wildcard lib/load/*.c)
 PROCEDURAL := $(wildcard lib/procedural/*.c)
 TOOL := $(wildcard tools/*.c)
 TESTS := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
-EXAMPLES := $(patsubst examples/%.c,%,$(wildcard examples/*.c))
+# planned.c is compiled with a header that a plan writes: tests/plan.sh
+EXAMPLES := $(patsubst examples/%.c,%,$(filter-out examples/planned.c,$(wildcard examples/*.c)))
 objects = $(patsubst %.c,$(BUILD)/$(2)/%.o,$(1))
 
 CORE_A := $(BUILD)/libaset.a
@@ -91,6 +92,7 @@ $(BUILD)/tests/%: tests/%.c $(wildcard tests/support/*) $(TOOL_TESTABLE) $(ARCHI
 test: $(addprefix $(BUILD)/tests/,$(TESTS)) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
 	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
+	  echo "== plan.sh"; bash tests/plan.sh $(BUILD)/aset "$(CC)" || failed="$$failed plan.sh"; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi; echo "all tests passed"
 
 test-long: $(BUILD)/aset ## every method against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)

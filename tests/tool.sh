@@ -260,7 +260,7 @@ help_and_version() {
     local command word
     works --help
     cp "$out" commands
-    for command in render info scene compare; do
+    for command in render info scene compare tables sheet; do
         grep -q "^ *$command " commands || fail "aset --help does not name $command"
         works $command --help
         cp "$out" long
@@ -755,6 +755,71 @@ compare_refuses() {
     refused 1 "aset: missing.png: "
 }
 
+# The sizes are those of sheet.c's layout: margins of 12, letters of 6 x 10, lines of 12, 4 above a label.
+sheet_size() { # WIDTHxHEIGHT, then the words behind -o
+    local size=$1
+    shift
+    works sheet -o s.png "$@"
+    [ "$(png_size s.png)" = "$size" ] || fail "sheet $*: $(png_size s.png), expected $size"
+}
+
+sheet_lays_out() {
+    works render "$scenes/balls.nff" -s 40x30 -o a.ppm
+    works render "$scenes/tetra.nff" -s 20x50 -o b.png
+    sheet_size 116x74 a.ppm b.png
+    sheet_size 116x136 a.ppm b.png a.ppm
+    sheet_size 168x74 a.ppm b.png a.ppm --columns 9
+    sheet_size 64x136 --columns=1 a.ppm b.png
+    sheet_size 64x192 --columns 1 a.ppm=one "b.png=two|lines"
+    sheet_size 64x228 --columns 1 --title T a.ppm=one "b.png=two|lines"
+    sheet_size 83x70 a.ppm=0123456789
+    sheet_size 83x106 --title 01234 a.ppm=0123456789
+    sheet_size 83x94 --title 012345 a.ppm=0123456789
+    sheet_size 149x78 --title "a title of 21 letters" a.ppm
+    works sheet -o same.png a.ppm b.png
+    works sheet -o - a.ppm= b.png=
+    same "$out" same.png "an empty label and none differ, or standard output and a file"
+}
+
+# A picture's pixels stand in their place on a white sheet; a label changes what is below only.
+sheet_shows_the_pictures() {
+    local y
+    works render "$scenes/balls.nff" -s 40x30 -o a.ppm
+    works sheet -o s.ppm a.ppm
+    [ "$(head -n 2 s.ppm | tail -n 1)" = "64 54" ] || fail "the sheet is $(head -n 2 s.ppm | tail -n 1)"
+    for y in 0 1 29; do
+        tail -c +$((14 + ((y + 12) * 64 + 12) * 3)) s.ppm | head -c 120 >row
+        tail -c +$((14 + y * 120)) a.ppm | head -c 120 | cmp -s - row || fail "row $y of the picture is not on the sheet"
+    done
+    [ "$(tail -c +14 s.ppm | head -c $((12 * 64 * 3)) | tr -d '\377' | wc -c)" -eq 0 ] || fail "the margin is not white"
+    works sheet -o t.ppm a.ppm=label
+    tail -c +14 t.ppm | head -c $((42 * 64 * 3)) >upper
+    tail -c +14 s.ppm | head -c $((42 * 64 * 3)) | cmp -s - upper || fail "a label changes the picture"
+    [ "$(tail -c +$((14 + 42 * 64 * 3)) t.ppm | tr -d '\377' | wc -c)" -gt 100 ] || fail "no label to be seen"
+}
+
+sheet_refuses() {
+    local bad
+    for bad in "" "a.png" "-o s.png" "-o s.gif a.png" "-o s.png --columns 0 a.png" "-o s.png --columns x a.png" \
+        "-o s.png =label" "-o s.png --nonsense a.png"; do
+        wrong_words sheet $bad
+    done
+    wrong_words sheet -o s.png $'a.png=tab\tstop'
+    wrong_words sheet -o s.png a.png --title $'gr\303\274n'
+    works render "$scenes/balls.nff" -s 40x40 -o a.png
+    head -c 300 a.png >cut.png
+    cp "$scenes/balls.nff" text.png
+    mkdir folder.png
+    echo old >s.png
+    for bad in cut.png text.png folder.png missing.png; do
+        tool sheet -o s.png a.png=label $bad=label
+        (refused 1 "aset: $bad: ") || fail "$bad: $(cat "$why")"
+        [ "$(cat s.png)" = old ] || fail "$bad: a sheet all the same"
+    done
+    tool sheet -o nowhere/s.png a.png
+    refused 1 "aset: nowhere/s.png: "
+}
+
 # ---- outputs ----
 
 # Standard output (or, with -o in the words, nothing else) cannot be written: one line, status 1.
@@ -771,7 +836,7 @@ full_disk() {
     for command in "--help" "--version" "render --help" "info $scenes/balls.nff" "scene tetra" "scene balls --size 1" \
         "render $scenes/balls.nff -s 16x16 -o -" "render $scenes/balls.nff -s 300x300 -o -" \
         "render $scenes/balls.nff -s 16x16 --stats -" "render $scenes/balls.nff -s 16x16 --report" \
-        "compare $scenes/balls.png $scenes/balls.png --json"; do
+        "compare $scenes/balls.png $scenes/balls.png --json" "sheet -o - $scenes/balls.png"; do
         status=0
         "$aset" $command >/dev/full 2>"$err" || status=$?
         cannot_write "$command"
@@ -881,6 +946,139 @@ progress_bar() {
     [ ! -s none ] || fail "--quiet: $(head -c 80 none)"
 }
 
+# The paper's tables: without times two runs agree to the byte; with them a row for each of the paper's.
+tables_repeat_their_counts() {
+    works tables --size 12 --rounds 0 -o a.txt
+    works tables --size=12 --rounds=0
+    same a.txt "$out" "two runs differ"
+    [ "$(grep -c '^Snow 30 ' a.txt)" -ge 6 ] || fail "Snow 30 stands in $(grep -c '^Snow 30 ' a.txt) tables"
+    grep -q '^Tetra 10 .* 1[01]\.[0-9]* (11\.40) ' a.txt || fail "no density of Tetra 10 near 11.4"
+    works tables --size 9 --rounds 2 --markdown
+    [ "$(grep -c '^## ' "$out")" -eq 5 ] || fail "$(grep -c '^## ' "$out") headings"
+    [ "$(grep -c '^| Gears, deep |' "$out")" -eq 7 ] || fail "the last row stands in $(grep -c '^| Gears, deep |' "$out") tables"
+    awk -F'|' '/^\|/ { if (n && NF != n) exit 1; n = NF; next } { n = 0 }' "$out" || fail "rows of unequal columns"
+    rm a.txt
+    wrong_words tables scene.nff
+    wrong_words tables --size 0
+    wrong_words tables --rounds 100
+    tool tables --size 4 --rounds 0 -o missing/a.txt
+    refused 1 "aset: missing/a.txt: "
+}
+
+# ---- trade ----
+
+# Columns by name, for awk: c["psnr"] is its number.
+trade_columns='BEGIN { FS = "," } NR == 1 { for (i = 1; i <= NF; i++) c[$i] = i; next }'
+
+trade_table() {
+    works trade "$scenes/balls.nff" tetra:2 -o t -m mset,octree,brute --grids 4,auto --octree-depths 2 -s 24x24,16x20 --rounds 2
+    # mset twice, octree, brute; exact, and four approximations with and without curtailment; two sizes; two scenes
+    [ "$(wc -l <t/trade.csv)" -eq $((1 + 4 * 9 * 2 * 2)) ] || fail "$(wc -l <t/trade.csv) lines"
+    for column in scene method grid octree_depth approx level cells curtail size build_s render_s rays tests cells_visited \
+        peak_bytes psnr rmse ssim max_difference differing best; do
+        head -n 1 t/trade.csv | tr ',' '\n' | grep -qx $column || fail "no column $column: $(head -n 1 t/trade.csv)"
+    done
+    [ "$(awk -F, '{ print NF }' t/trade.csv | sort -u | wc -l)" -eq 1 ] || fail "rows of different length"
+    awk "$trade_columns"' $c["approx"] == "none" && ($c["psnr"] != 99 || $c["differing"] != 0 || $c["max_difference"] != 0) { exit 1 }' \
+        t/trade.csv || fail "an exact setting is not equal to the exact picture"
+    awk "$trade_columns"' $c["build_min_s"] > $c["build_s"] || $c["build_s"] > $c["build_max_s"] ||
+        $c["render_min_s"] > $c["render_s"] || $c["render_s"] > $c["render_max_s"] { exit 1 }' t/trade.csv ||
+        fail "a median outside its spread"
+    [ ! -e t/trade.csv.partial ] || fail "the partial file is still there"
+}
+
+trade_best_marks() {
+    works trade "$scenes/balls.nff" tetra:2 -o t --quick -s 24x24 -q
+    [ ! -s "$out" ] || fail "--quiet: $(head -n 1 "$out")"
+    awk "$trade_columns"' {
+            n++; scene[n] = $1; time[n] = int(1e6 * ($c["build_s"] + $c["render_s"]) + 0.5)
+            bytes[n] = $c["peak_bytes"] + 0; error[n] = $c["rmse"] + 0; best[n] = $c["best"]
+        }
+        END {
+            for (i = 1; i <= n; i++) {
+                mark = 1
+                for (k = 1; k <= n; k++)
+                    if (scene[k] == scene[i] && time[k] <= time[i] && bytes[k] <= bytes[i] && error[k] <= error[i] &&
+                        (time[k] < time[i] || bytes[k] < bytes[i] || error[k] < error[i])) mark = 0
+                if (mark != best[i]) { print "row " i ": best is " best[i]; exit 1 }
+                any[scene[i]] += mark
+            }
+            for (s in any) if (any[s] == 0) { print s ": none is best"; exit 1 }
+        }' t/trade.csv >"$noise" || fail "$(cat "$noise")"
+}
+
+# The figures are those of render and compare, and peak_bytes is enough for render.
+trade_says_what_render_says() {
+    local words
+    works trade "$scenes/balls.nff" -o t -m mset,grid,arts --grids 6 --octree-depths 3 -s 24x24 --rounds 1
+    works render "$scenes/balls.nff" -s 24x24 -o exact.png
+    awk "$trade_columns"' $c["level"] != "" && $c["curtail"] == 0.5 {
+        print $c["method"], $c["grid"] == "" ? "--octree-depth=" $c["octree_depth"] : "--grid=" $c["grid"], $c["approx"],
+            $c["level"], $c["peak_bytes"], $c["tests"], $c["cells_visited"], $c["psnr"] }' t/trade.csv >rows
+    [ "$(wc -l <rows)" -eq 12 ] || fail "$(wc -l <rows) rows"
+    while read -r method divisions approx level bytes tests cells db; do
+        words="-m $method $divisions --approx $approx --approx-depth $level --memory $bytes"
+        # shellcheck disable=SC2086
+        works render "$scenes/balls.nff" $words -s 24x24 -o a.png --stats a.json
+        [ "$(json a.json work tests) $(json a.json work cells_visited)" = "$tests $cells" ] || fail "$words: other counts"
+        [ "$(psnr exact.png a.png)" = "$db" ] || fail "$words: psnr $(psnr exact.png a.png), the table says $db"
+    done <rows
+}
+
+trade_resumes() {
+    local sweep="trade $scenes/balls.nff -o t -m mset --grids 8 -s 40x40 --rounds 99"
+    # shellcheck disable=SC2086
+    "$aset" $sweep >/dev/null 2>&1 &
+    until [ -e t/trade.csv.partial ] && [ "$(wc -l <t/trade.csv.partial)" -gt 5 ]; do sleep 0.01; done
+    kill -KILL $! && wait $! 2>/dev/null
+    [ ! -e t/trade.csv ] || fail "the table is there before its time"
+    # a time that no measurement gives, and a line that was cut off
+    awk 'BEGIN { FS = OFS = "," } NR == 2 { $12 = 777000000 } { print }' t/trade.csv.partial >p
+    printf 'deadbeef' >>p
+    cp p t/trade.csv.partial
+    # shellcheck disable=SC2086
+    tool $sweep --grids 9
+    refused 1 "aset: t/trade.csv.partial:2: "
+    same p t/trade.csv.partial "a refused file was changed"
+    # shellcheck disable=SC2086
+    works $sweep
+    [ "$(wc -l <t/trade.csv)" -eq 10 ] || fail "$(wc -l <t/trade.csv) lines"
+    [ "$(grep -c ',777\.000000,' t/trade.csv)" -eq 1 ] || fail "what was measured before is not in the table"
+    [ ! -e t/trade.csv.partial ] || fail "the partial file is still there"
+}
+
+# One file, whole in itself: no other file, address or script; with plots where there is gnuplot, and without where not.
+trade_page() {
+    works trade "$scenes/balls.nff" -o t --quick -s 24x24
+    grep -q '</html>' t/trade.html || fail "the page does not end"
+    [ "$(grep -o 'src="data:image/png;base64,iVBORw0KGgo' t/trade.html | wc -l)" -eq 5 ] || fail "not five pictures within"
+    ! grep -oE '(src|href)="[^d#][^"]*"|<script|@import|url\([^#]' t/trade.html || fail "it refers to something outside"
+    [ "$(grep -c '<tr class="best"><td>best' t/trade.html)" -eq "$(awk -F, '$NF == 1' t/trade.csv | wc -l)" ] || fail "other marks"
+    if command -v gnuplot >/dev/null; then
+        [ "$(grep -c '</svg>' t/trade.html)" -eq 2 ] || fail "not two plots within"
+        [ "$(find t -name '*.svg' | wc -l)" -eq 2 ] || fail "not two plots beside"
+    fi
+    PATH= works trade "$scenes/balls.nff" -o u --quick -s 24x24
+    grep -q 'no gnuplot' "$out" || fail "it does not say that there are no plots"
+    ! grep -q '<svg' u/trade.html || fail "a plot without gnuplot"
+}
+
+trade_refuses() {
+    wrong_words trade
+    wrong_words trade balls balls
+    wrong_words trade balls --sizes 8x8,8x8
+    wrong_words trade balls --grids 8,,9
+    wrong_words trade balls --methods mset,other
+    wrong_words trade balls --rounds 0
+    tool trade nosuch
+    refused 1 "aset: nosuch: "
+    tool trade balls:0
+    refused 1 "aset: balls:0: "
+    echo old >file
+    tool trade balls --quick -s 8x8 -o file
+    refused 1 "aset: file: "
+}
+
 # ---- the run ----
 
 mkdir "$scenes"
@@ -900,8 +1098,9 @@ bad_scene_on_standard_input bad_cut_off_files bad_prefixes bad_letters_for_numbe
 bad_announced_but_missing_points bad_order bad_views bad_objects bad_camera_options extreme_coordinates
 scene_text_is_read_freely budget_exact budget_approximate budget_of_two_threads budget_is_what_info_says
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
-scene_into_render compare_figures_and_status compare_refuses full_disk file_size_limit closed_pipe
-outputs_that_cannot_be old_output interrupted progress_bar
+scene_into_render compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
+full_disk file_size_limit closed_pipe outputs_that_cannot_be old_output interrupted progress_bar
+trade_table trade_best_marks trade_says_what_render_says trade_resumes trade_page trade_refuses
 "
 for name in $cases; do
     case $name in

@@ -18,6 +18,10 @@ static const tool_command commands[] = {
     {"info", "counts, bounds and memory of a scene", command_info},
     {"scene", "writes a procedural scene as NFF", command_scene},
     {"compare", "the difference of two pictures", command_compare},
+    {"tables", "the tables of the paper, measured beside published", command_tables},
+    {"plan", "the best settings for a scene within a budget", command_plan},
+    {"sheet", "pictures side by side on one, with labels", command_sheet},
+    {"trade", "speed, memory and error of many settings, measured", command_trade},
 };
 #define N_COMMANDS (sizeof commands / sizeof commands[0])
 

@@ -39,7 +39,7 @@ static bool print_method(measured *m, const char *path, const aset_method *metho
     if (!measured_space(m, path, method, options, &size, &summary)) {
         return false;
     }
-    size_t before = m->scene_bytes + scratch, kept = size.total - size.scratch;
+    size_t before = m->scene_bytes + scratch, kept = size.cells + size.references + size.voxels;
     size_t exact = before + size.total, approximate = before + (kept + summary > size.total ? kept + summary : size.total);
     (void)printf("%-11s %" PRIu32 " x %" PRIu32 " x %" PRIu32 ": exact %zu bytes, approximate %zu bytes\n",
                  aset_method_name(method), size.divisions[0], size.divisions[1], size.divisions[2], exact, approximate);

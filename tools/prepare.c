@@ -66,7 +66,7 @@ static void tell_need(tool_source *source, const settings *s, const aset_counts 
     }
     options.depth = options.depth > 0 ? options.depth : 1;
     if (measured_space(&m, source->path, s->method, &options, &size, approximates(s) ? &summary : NULL)) {
-        size_t before = m.scene_bytes + scratch_bytes(s), kept = size.total - size.scratch + summary;
+        size_t before = m.scene_bytes + scratch_bytes(s), kept = size.cells + size.references + size.voxels + summary;
         tool_error(source->path, 0, "the picture needs %zu bytes, has %" PRIu64,
                    before + (kept > size.total ? kept : size.total), s->memory);
     }

@@ -32,6 +32,10 @@ int command_render(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_scene(int argc, char **argv);
 int command_compare(int argc, char **argv);
+int command_tables(int argc, char **argv);
+int command_plan(int argc, char **argv);
+int command_sheet(int argc, char **argv);
+int command_trade(int argc, char **argv);
 
 /* --- error.c --- */
 

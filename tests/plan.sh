@@ -1,0 +1,48 @@
+#!/bin/bash
+# A program compiled with the header that a plan wrote draws the plan's picture in an arena to the byte: plan.sh ASET CC
+set -eu
+aset=$1
+cc=$2
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+passed=0
+failed=0
+check() { # name, command ...
+    name=$1
+    shift
+    if "$@" > "$dir/log" 2>&1; then passed=$((passed + 1)); else
+        failed=$((failed + 1))
+        echo "not ok $name: $(tail -n 1 "$dir/log")"
+    fi
+}
+value() { sed -n "s/.*\"$1\":\"\{0,1\}\([a-z0-9.]*\).*/\1/p" "$dir/plan.json"; }
+try() { # scene, size, memory, further words of the plan
+    scene=$1
+    size=$2
+    memory=$3
+    shift 3
+    "$aset" scene "$scene" --size "$size" | sed 's/^resolution .*/resolution 64 64/' > "$dir/scene.nff"
+    check "$scene-plans" "$aset" plan "$dir/scene.nff" --memory "$memory" --header "$dir/plan.h" --json "$@"
+    cp "$dir/log" "$dir/plan.json"
+    check "$scene-compiles" "$cc" -std=c99 -O1 -ffp-contract=off -include "$dir/plan.h" -Iinclude -Ilib examples/planned.c \
+        lib/base/*.c lib/scene/*.c lib/space/*.c lib/approx/*.c lib/trace/*.c lib/load/*.c -lm -o "$dir/planned"
+    check "$scene-runs" sh -c "'$dir/planned' '$dir/scene.nff' > '$dir/planned.ppm'"
+    check "$scene-renders" "$aset" render "$dir/scene.nff" --method "$(value method)" --grid "$(value grid)" \
+        --approx "$(value approx)" --approx-depth "$(value approx_depth)" --memory "$(value bytes)" -o "$dir/render.ppm"
+    check "$scene-same-picture" cmp "$dir/planned.ppm" "$dir/render.ppm"
+    if "$aset" render "$dir/scene.nff" --method "$(value method)" --grid "$(value grid)" --approx "$(value approx)" \
+        --approx-depth "$(value approx_depth)" --memory $(($(value bytes) - 1)) 2> /dev/null; then
+        failed=$((failed + 1))
+        echo "not ok $scene: one byte less than the plan's bytes is enough"
+    else
+        passed=$((passed + 1))
+    fi
+}
+try snow 1 60K --error 20
+try gears 2 256K
+try tetra 4 64K
+if "$aset" plan "$dir/scene.nff" --memory 5000 2> "$dir/log"; then failed=$((failed + 1)); else passed=$((passed + 1)); fi
+need=$(sed -n 's/.*needs \([0-9]*\) bytes.*/\1/p' "$dir/log")
+check least-fits "$aset" plan "$dir/scene.nff" --memory "$need"
+echo "plan: $passed passed, $failed failed"
+[ $failed = 0 ]

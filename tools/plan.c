@@ -1,0 +1,163 @@
+/* plan.c - the command `aset plan`: the best settings for a scene within a budget, and what to expect of them. */
+#include "plan.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "aset plan SCENE --memory BYTES [--error DB | --time MS] [--header FILE]: the settings to take within a budget.\n"
+    "\n"
+    "      --memory BYTES   the arena (K = 1024, M); default 8M\n"
+    "      --error DB       the fastest setting of at least this PSNR against the exact picture\n"
+    "      --time MS        the most accurate setting within this time on this machine, build and picture\n"
+    "                       (neither: the most accurate that fits, and of equals the fastest)\n"
+    "      --header FILE    write the sizes of this scene and setting, and the switches it needs, as a C header\n"
+    "  -s, --size WxH       the picture; default the scene's, else 512x512\n"
+    "      --depth N        rays in a chain; default 5\n"
+    "      --all            print every setting that was probed\n"
+    "      --json           the plan as JSON\n"
+    "  -h, --help           this text\n"
+    "\n"
+    "Bytes are exact. Times and PSNR are expected from a sample of the picture's rays; time is said as the ratio to the exact\n"
+    "picture by MSET at automatic divisions. Settings are MSET and SET with up to 5 numbers of divisions, exact or approximate in three ways.\n";
+
+typedef struct request {
+    plan_wish wish;
+    const char *scene, *header;
+    bool all, json, wants_help;
+} request;
+
+static const char *kinds_words(const plan_setting *s) {
+    return s->approx_kinds == 0 ? "none" : s->approx_kinds == ASET_SHADOW ? "shadow" : "all";
+}
+
+static void print_setting(const plan *p, const plan_setting *s) {
+    (void)printf("--method %-4s --grid %-3" PRIu32 " --approx %-6s --approx-depth %" PRIu32 ": %8zu bytes, %.2f of the exact time, ",
+                 aset_method_name(s->method), s->grid, kinds_words(s), s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes,
+                 s->seconds / p->exact_seconds);
+    if (s->approx_kinds == 0) {
+        (void)printf("exact%s\n", s->fits ? "" : ", does not fit");
+    } else {
+        (void)printf("%.1f dB%s\n", s->psnr, s->fits ? "" : ", does not fit");
+    }
+}
+
+static void print_json(const plan *p, const plan_setting *s) {
+    (void)printf("{\"method\":\"%s\",\"grid\":%" PRIu32 ",\"approx\":\"%s\",\"approx_depth\":%" PRIu32
+                 ",\"bytes\":%zu,\"relative_time\":%.4f,\"seconds\":%.4f,\"psnr\":%.2f}\n",
+                 aset_method_name(s->method), s->grid, kinds_words(s), s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes,
+                 s->seconds / p->exact_seconds, s->seconds, s->psnr);
+}
+
+static bool tell(const request *r, const plan *p, const measured *m) {
+    if (r->all) {
+        for (int i = 0; i < p->n; i++) {
+            print_setting(p, &p->settings[i]);
+        }
+    }
+    if (p->chosen < 0) {
+        tool_error(r->scene, 0, "the picture needs %zu bytes, has %" PRIu64, p->least_bytes, r->wish.memory);
+        return false;
+    }
+    const plan_setting *s = &p->settings[p->chosen];
+    if (r->wish.time_ms > 0 && s->seconds * 1000 > r->wish.time_ms) {
+        tool_error(r->scene, 0, "no setting takes %g ms, the fastest that fits takes about %.0f ms", r->wish.time_ms,
+                   s->seconds * 1000);
+        return false;
+    }
+    if (r->json) {
+        print_json(p, s);
+    } else {
+        print_setting(p, s);
+    }
+    return r->header == NULL || plan_write_header(r->header, m, r->scene, s, r->wish.depth);
+}
+
+static bool plan_from(const request *r, tool_source *source) {
+    aset_counter counter;
+    measured m;
+    plan p;
+    aset_sink sink = aset_counter_sink(&counter);
+    if (!tool_source_read(source, &sink) || !measured_open(&m, source, &counter.counts)) {
+        return false;
+    }
+    plan_wish wish = r->wish;
+    const aset_view *view = &m.scene.view;
+    if (wish.width == 0) {
+        wish.width = view->width_px > 0 ? view->width_px : 512;
+        wish.height = view->height_px > 0 ? view->height_px : 512;
+    }
+    bool done = plan_make(&p, &m, r->scene, &wish) && tell(r, &p, &m);
+    free(m.block);
+    return done;
+}
+
+static bool parse_option(request *r, int option) {
+    plan_wish *w = &r->wish;
+    switch (option) {
+    case 'm': return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &w->memory);
+    case 'e': return tool_parse_real("--error", optarg, 1, 99, &w->error_db);
+    case 't': return tool_parse_real("--time", optarg, 0.001, 1e9, &w->time_ms);
+    case 'H': r->header = optarg; return true;
+    case 's': return tool_parse_size("--size", optarg, &w->width, &w->height);
+    case 'd': return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &w->depth);
+    case 'a': r->all = true; return true;
+    case 'j': r->json = true; return true;
+    case 'h': r->wants_help = true; return true;
+    default: return false;
+    }
+}
+
+static bool parse_request(request *r, int argc, char **argv) {
+    static const struct option longs[] = {
+        {"memory", required_argument, NULL, 'm'}, {"error", required_argument, NULL, 'e'},
+        {"time", required_argument, NULL, 't'},   {"header", required_argument, NULL, 'H'},
+        {"size", required_argument, NULL, 's'},   {"depth", required_argument, NULL, 'd'},
+        {"all", no_argument, NULL, 'a'},          {"json", no_argument, NULL, 'j'},
+        {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+    };
+    int option;
+    memset(r, 0, sizeof *r);
+    r->wish.memory = 8u << 20;
+    r->wish.depth = ASET_DEPTH_DEFAULT;
+    while ((option = tool_option_next(argc, argv, "s:h", longs)) != -1) {
+        if (option == '?' || !parse_option(r, option)) {
+            return false;
+        }
+        if (r->wants_help) {
+            return true;
+        }
+    }
+    if (r->wish.error_db > 0 && r->wish.time_ms > 0) {
+        tool_error(NULL, 0, "plan: --error and --time are alternatives, expected one of them");
+        return false;
+    }
+    if (argc - optind != 1) {
+        tool_error(NULL, 0, "plan: expected one scene, got %d words; aset plan --help tells more", argc - optind);
+        return false;
+    }
+    r->scene = argv[optind];
+    return true;
+}
+
+int command_plan(int argc, char **argv) {
+    request r;
+    tool_source source;
+    if (!parse_request(&r, argc, argv)) {
+        return TOOL_USAGE;
+    }
+    if (r.wants_help) {
+        return tool_help(help);
+    }
+    if (!tool_source_open(&source, r.scene)) {
+        return TOOL_FAILED;
+    }
+    bool done = plan_from(&r, &source);
+    tool_source_close(&source);
+    if (done && fflush(stdout) != 0) {
+        tool_error(NULL, 0, "standard output cannot be written");
+        done = false;
+    }
+    return done ? TOOL_DONE : TOOL_FAILED;
+}

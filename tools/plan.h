@@ -1,0 +1,42 @@
+/* plan.h - settings for a scene within a budget, and what is expected of them. */
+#ifndef ASET_TOOLS_PLAN_H
+#define ASET_TOOLS_PLAN_H
+
+#include "prepare.h"
+
+/* One way of drawing that was probed. */
+typedef struct plan_setting {
+    const aset_method *method; /* MSET or SET */
+    uint32_t grid;             /* divisions on every axis; SET: at the most */
+    uint32_t approx_kinds, approx_depth;
+    uint32_t textures; /* in the summary's list; 0: exact */
+    aset_space_size size;
+    size_t bytes;      /* of the arena, all told */
+    double seconds;    /* expected for the whole picture, build included */
+    double psnr;       /* expected, dB; METRICS_PSNR_MAX for exact */
+    bool fits;
+} plan_setting;
+
+/* What is asked for; error_db and time_ms 0: not asked. */
+typedef struct plan_wish {
+    uint64_t memory;
+    double error_db, time_ms;
+    uint32_t width, height, depth;
+} plan_wish;
+
+enum { PLAN_SETTINGS_MAX = 64 };
+
+typedef struct plan {
+    plan_setting settings[PLAN_SETTINGS_MAX];
+    int n, chosen;        /* chosen: -1 if nothing fits */
+    double exact_seconds; /* the exact picture's at automatic divisions, the unit of relative times */
+    size_t least_bytes;   /* the smallest need of all */
+} plan;
+
+/* Probes the loaded scene and chooses. False after an error line. */
+bool plan_make(plan *p, measured *m, const char *path, const plan_wish *wish);
+
+/* Writes the header for the setting. False after an error line. */
+bool plan_write_header(const char *path, const measured *m, const char *scene_path, const plan_setting *s, uint32_t depth);
+
+#endif

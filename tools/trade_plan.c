@@ -1,0 +1,233 @@
+/*
+ * trade_plan.c - which settings a sweep measures: scenes loaded, spaces measured, the arenas' exact needs.
+ *
+ * Invariant: no two settings have the same key, and every group has an exact setting.
+ */
+#include "aset/procedural.h"
+
+#include "trade.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+const trade_approx trade_approxes[TRADE_APPROXES] = {
+    {"none", "exact", 0, 0},
+    {"all", "all rays from depth 1", ASET_ALL_KINDS, 1},
+    {"all", "all rays", ASET_ALL_KINDS, 0},
+    {"shadow", "shadow rays", ASET_SHADOW, 0},
+    {"primary", "eye rays", ASET_PRIMARY, 0},
+};
+static const double curtails[] = {0.5, 0};
+
+/* --- scenes --- */
+
+/* NAME or NAME:SIZE as NFF in a temporary file: the very text that `aset scene` writes. False after an error line. */
+static bool open_procedural(tool_source *source, const char *name) {
+    char word[32];
+    size_t length = strcspn(name, ":");
+    (void)snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : 0), name);
+    const aset_procedural *scene = aset_procedural_find(word);
+    uint32_t size = 0;
+    if (scene == NULL) {
+        tool_error(name, 0, "neither an .nff file nor a procedural scene; aset scene --help lists those");
+        return false;
+    }
+    if (name[length] == ':' && !tool_parse_count(name, name + length + 1, 1, scene->largest_size, &size)) {
+        return false;
+    }
+    tool_nff nff;
+    source->path = name;
+    source->one_sided_opaque = false;
+    source->stream = tmpfile();
+    aset_sink sink = tool_nff_sink(&nff, source->stream, 0.01);
+    if (source->stream == NULL || scene->emit(&sink, size) != ASET_OK || tool_nff_end(&nff) != ASET_OK ||
+        fflush(source->stream) != 0) {
+        tool_error(name, 0, "cannot be written to a temporary file: %s", strerror(errno));
+        tool_source_close(source);
+        return false;
+    }
+    return true;
+}
+
+/* FNV-1a (Fowler, Noll and Vo) of the scene's text and the program's version. */
+static uint64_t hash_source(const tool_source *source) {
+    uint64_t hash = UINT64_C(14695981039346656037);
+    for (const char *c = ASET_VERSION; *c != 0; c++) {
+        hash = (hash ^ (unsigned char)*c) * UINT64_C(1099511628211);
+    }
+    hash = (hash ^ ASET_REAL_BITS) * UINT64_C(1099511628211);
+    rewind(source->stream);
+    for (int c; (c = getc(source->stream)) != EOF;) {
+        hash = (hash ^ (unsigned char)c) * UINT64_C(1099511628211);
+    }
+    return hash;
+}
+
+/* The last part of the name, without .nff, in letters that every file system and page takes. */
+static char *make_label(const char *name) {
+    const char *slash = strrchr(name, '/');
+    name = slash != NULL ? slash + 1 : name;
+    size_t length = strlen(name) - (tool_has_extension(name, ".nff") ? 4 : 0);
+    char *label = calloc(length + 1, 1);
+    for (size_t i = 0; label != NULL && i < length; i++) {
+        static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
+        label[i] = strchr(allowed, name[i]) != NULL ? name[i] : '-';
+    }
+    return label;
+}
+
+static bool open_scene(trade_scene *scene, const char *name) {
+    aset_counter counter;
+    aset_sink sink = aset_counter_sink(&counter);
+    scene->name = name;
+    scene->label = make_label(name);
+    if (scene->label == NULL) {
+        tool_error(name, 0, "no memory for its name");
+        return false;
+    }
+    if (!(tool_has_extension(name, ".nff") ? tool_source_open(&scene->source, name)
+                                           : open_procedural(&scene->source, name))) {
+        return false;
+    }
+    scene->hash = hash_source(&scene->source);
+    if (!tool_source_read(&scene->source, &sink) || !measured_open(&scene->loaded, &scene->source, &counter.counts)) {
+        scene->loaded.block = NULL; /* given back already */
+        return false;
+    }
+    return true;
+}
+
+/* --- the plan --- */
+
+/* Whether this space is planned already: "auto" may be what another word says. */
+static bool is_planned(const trade *t, const trade_group *group, const aset_method *method, const uint32_t grid[3],
+                       uint32_t depth) {
+    for (uint32_t i = 0; i < t->n_settings; i++) {
+        const trade_setting *s = &t->settings[i];
+        if (s->group == group && s->method == method && s->tree_depth == depth &&
+            memcmp(s->grid, grid, sizeof s->grid) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* All ways to draw over one space. The need is render's: the scratch, and the space while built or with its summary. */
+static bool plan_space(trade *t, trade_group *group, const aset_method *method, const uint32_t grid[3], uint32_t depth) {
+    trade_scene *scene = group->scene;
+    aset_space_size size;
+    size_t summary;
+    aset_space_options options;
+    memset(&options, 0, sizeof options);
+    memcpy(options.divisions, grid, sizeof options.divisions);
+    options.depth = depth;
+    if (depth == 0 && grid[0] == 0 && method != &aset_brute) {
+        aset_auto_divisions(&scene->loaded.scene, 0, options.divisions);
+    }
+    if (is_planned(t, group, method, options.divisions, depth)) {
+        return true;
+    }
+    if (!measured_space(&scene->loaded, scene->name, method, &options, &size, &summary)) {
+        return false;
+    }
+    size_t built = size.cells + size.references + size.voxels + summary, scratch = ASET_BYTES_SCRATCH(ASET_DEPTH_DEFAULT);
+    for (unsigned approx = 0; approx < TRADE_APPROXES; approx++) {
+        for (size_t c = 0; c < (approx == TRADE_EXACT ? 1 : sizeof curtails / sizeof curtails[0]); c++) {
+            trade_setting *s = &t->settings[t->n_settings++];
+            s->group = group;
+            s->method = method;
+            memcpy(s->grid, options.divisions, sizeof s->grid);
+            s->tree_depth = depth;
+            s->approx = approx;
+            s->curtail = curtails[c];
+            s->need = scratch + (approx != TRADE_EXACT && built > size.total ? built : size.total);
+        }
+    }
+    return true;
+}
+
+static bool plan_group(trade *t, const trade_words *w, trade_group *group) {
+    static const uint32_t none[3] = {0, 0, 0};
+    bool done = true;
+    for (unsigned m = 0; done && tool_methods[m] != NULL; m++) {
+        const aset_method *method = tool_methods[m];
+        bool slices = method == &aset_mset || method == &aset_set || method == &aset_grid;
+        uint32_t n = method == &aset_brute ? 1 : slices ? w->n_grids : w->n_depths;
+        for (uint32_t i = 0; done && (w->methods >> m & 1) != 0 && i < n; i++) {
+            done = plan_space(t, group, method, slices ? w->grids[i] : none,
+                              slices || method == &aset_brute ? 0 : w->depths[i]);
+        }
+    }
+    return done;
+}
+
+/* Memory for the rounds of all settings, and the block of the greediest. */
+static bool plan_memory(trade *t) {
+    size_t most = 1;
+    for (uint32_t i = 0; i < t->n_settings; i++) {
+        trade_setting *s = &t->settings[i];
+        s->build = calloc(2 * (size_t)t->rounds, sizeof *s->build);
+        if (s->build == NULL) {
+            return false;
+        }
+        s->render = s->build + t->rounds;
+        most = s->need > most ? s->need : most;
+    }
+    t->block = malloc(most);
+    if (t->block != NULL) {
+        memset(t->block, 0xA5, most);
+    }
+    return t->block != NULL;
+}
+
+bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names) {
+    size_t per_group = (size_t)2 * TRADE_APPROXES * 8 * TRADE_LIST_MAX; /* 8 methods at the most, each with a full list */
+    t->directory = w->directory;
+    t->rounds = w->rounds;
+    t->quiet = w->quiet;
+    t->scenes = calloc(n_names, sizeof *t->scenes);
+    t->groups = calloc((size_t)n_names * w->n_sizes, sizeof *t->groups);
+    t->settings = calloc(n_names * w->n_sizes * per_group, sizeof *t->settings);
+    bool memory = t->scenes != NULL && t->groups != NULL && t->settings != NULL;
+    for (uint32_t i = 0; memory && i < n_names; i++) {
+        trade_scene *scene = &t->scenes[t->n_scenes++];
+        if (!open_scene(scene, names[i])) {
+            return false;
+        }
+        for (uint32_t k = 0; k < w->n_sizes; k++) {
+            trade_group *group = &t->groups[t->n_groups++];
+            *group = (trade_group){scene, w->sizes[k][0], w->sizes[k][1], NULL, 0};
+            if (!plan_group(t, w, group)) {
+                return false;
+            }
+        }
+    }
+    if (!memory || !plan_memory(t)) {
+        tool_error(NULL, 0, "trade: the machine has no memory for these settings");
+        return false;
+    }
+    return trade_keys(t);
+}
+
+void trade_free(trade *t) {
+    for (uint32_t i = 0; i < t->n_settings; i++) {
+        free(t->settings[i].build);
+        free(t->settings[i].key);
+    }
+    for (uint32_t i = 0; i < t->n_groups; i++) {
+        free(t->groups[i].exact);
+    }
+    for (uint32_t i = 0; i < t->n_scenes; i++) {
+        free(t->scenes[i].label);
+        free(t->scenes[i].loaded.block);
+        tool_source_close(&t->scenes[i].source);
+    }
+    if (t->partial != NULL) {
+        (void)fclose(t->partial);
+    }
+    free(t->scenes);
+    free(t->groups);
+    free(t->settings);
+    free(t->block);
+}
