@@ -89,6 +89,21 @@ $(BUILD)/tests/%: tests/%.c $(wildcard tests/support/*) $(TOOL_TESTABLE) $(ARCHI
 	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(CMOCKA_CFLAGS) -Itests -Itools -MMD -MP -o $@ $< \
 	  $(wildcard tests/support/*.c) $(TOOL_TESTABLE) $(ARCHIVES) $(CMOCKA_LIBS) $(PNG_LIBS) -lpthread -lm
 
+# Public headers only, so no -Ilib.
+$(BUILD)/tests/bench: tests/bench.c tests/bench_common.h $(ARCHIVES)
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(CPPFLAGS) $(filter-out -Ilib,$(STRICT)) $(POSIX) $(CFLAGS) -o $@ $< $(PROCEDURAL_A) $(CORE_A) -lm
+
+# Embree 3, if a small program with it compiles and links; else bench_peers says that it is absent and ends well.
+EMBREE = $(shell mkdir -p $(BUILD)/tests && echo 'int main(void) { return rtcNewDevice(0) == 0; }' | \
+  $(CC) -include embree3/rtcore.h -x c - -o $(BUILD)/tests/embree-probe -lembree3 2>/dev/null && echo yes)
+$(BUILD)/tests/bench_peers: tests/bench_peers.c tests/bench_common.h $(ARCHIVES)
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)if [ "$(EMBREE)" = yes ]; then with="-DBENCH_EMBREE=1" lib="-lembree3"; fi; \
+	  $(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $$with -o $@ $< $(PROCEDURAL_A) $(CORE_A) $$lib -lm
+
 test: $(addprefix $(BUILD)/tests/,$(TESTS)) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
 	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
@@ -142,6 +157,18 @@ methods: $(BUILD)/aset ## every method's draft of gears and snow in one sheet, a
 method-costs: $(BUILD)/aset ## what a step of each method costs, in instructions (needs valgrind): DESIGN.md's table
 	@bash tools/costs.sh $(BUILD)/aset $(BUILD)/costs
 
+bench: $(BUILD)/tests/bench ## build time and rays a second of every method (ARGS="--csv gears:3"; minutes)
+	@$(BUILD)/tests/bench $(ARGS)
+
+bench-instructions: $(BUILD)/tests/bench ## the same in instructions a ray (needs valgrind; ARGS="gears:3")
+	@bash tests/bench-instructions.sh $(BUILD)/tests/bench $(BUILD)/bench-instructions $(ARGS)
+
+bench-peers: $(BUILD)/tests/bench_peers ## ours beside Embree 3, if it is installed: build and picture, as ratios
+	@$(BUILD)/tests/bench_peers $(ARGS)
+
+tables: $(BUILD)/aset ## the paper's Tables 1 to 4 beside ours, into docs/tables.md
+	$(BUILD)/aset tables --markdown -o docs/tables.md
+
 bench-walk: $(BUILD)/tests/bench_walk ## what the generic walk costs MSET against a hand-fused loop
 	$(BUILD)/tests/bench_walk
 
@@ -182,5 +209,5 @@ help: ## show this text
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
 .PHONY: all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
-  hp9000 methods method-costs bench-walk prices pictures deps install clean help
+  hp9000 methods method-costs bench bench-instructions bench-peers bench-walk tables prices pictures deps install clean help
 .SECONDARY:

@@ -8,8 +8,8 @@
  * here is the loop of trace.c and shade_local with rtcOccluded1 in it, and the surface of a hit. First the two pictures
  * are compared: below 25 dB they are not the same picture, and no ratio is printed for that scene.
  *
- * Embree's default triangle test is its fastest and lets rays slip past edges (rings stay at 31 dB however fine they are);
- * --robust closes them and costs Embree 15 to 40 %. The default is what favours Embree.
+ * Embree's default triangle test is its fastest and lets some rays slip past edges (eye rays that hit are printed for both);
+ * --robust closes them and makes Embree slower. The default is what favours Embree.
  *
  * Builds: ours from a finished scene into a fresh block of memory, Embree's from finished buffers of triangles, which it
  * shares.

@@ -31,7 +31,6 @@ enum { PICTURE = 192, RANDOM_RAYS = 30000, ROUNDS_MAX = 101, FACES = 6 };
 /* --- the fused query --- */
 
 /* Where a ray from outside is made to start: query.c's number. */
-#define NEAR R(0.0625)
 
 typedef struct answer {
     aset_real t;
@@ -49,7 +48,7 @@ typedef struct fused {
 
 /* True: nothing further is of interest. */
 static inline bool fused_test(fused *f, uint32_t object, bool any) {
-    aset_real t = object_nearest(f->scene, object, f->ray, f->best);
+    aset_real t = object_nearest(f->scene, object, f->ray, f->end);
     f->tests++;
     f->hits += t < f->end;
     if (t < f->best || (t == f->best && f->object != ASET_NO_OBJECT && object < f->object)) {
@@ -178,27 +177,9 @@ static inline void fused_walk(fused *f, const aset_space *space, bool any) {
     f->cells += n_cells + (known ? 0 : brick_count_rest(slices, ray, &way, inside, f->best));
 }
 
-/* query.c's make_ready. */
-static aset_real fused_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
-    aset_vec3 low, high;
-    aset_real t_in, t_out;
-    *ray = probe_make(origin, direction);
-    if (!aset_scene_bounds(scene, &low, &high) || !probe_box(ray, low, high, &t_in, &t_out)) {
-        return 0;
-    }
-    aset_real moved = t_in - NEAR * vec_largest(vec_sub(high, low));
-    if (!(moved > 0)) {
-        return 0;
-    }
-    for (int a = 0; a < 3; a++) {
-        ray->origin[a] += moved * ray->direction[a];
-    }
-    return moved;
-}
-
 static inline answer fused_query(const aset_tracer *tracer, const aset_ray *r, bool any, aset_statistics *statistics) {
     probe ray;
-    aset_real moved = fused_ready(&ray, tracer->scene, r->origin, r->direction);
+    aset_real moved = query_ready(&ray, tracer->scene, r->origin, r->direction);
     fused f = {tracer->scene, &ray, r->t_max - moved, r->t_max - moved, ASET_NO_OBJECT, 0, 0, 0, 0};
     fused_walk(&f, tracer->space, any);
     statistics->tests += f.tests;
@@ -387,7 +368,7 @@ static void stage_close(stage *s) {
 /* Does the ray hit this object within its bounds? */
 static bool really_hits(const aset_tracer *tracer, const aset_ray *r, uint32_t object) {
     probe ray;
-    aset_real end = r->t_max - fused_ready(&ray, tracer->scene, r->origin, r->direction);
+    aset_real end = r->t_max - query_ready(&ray, tracer->scene, r->origin, r->direction);
     return object_nearest(tracer->scene, object, &ray, end) < end;
 }
 

@@ -244,8 +244,9 @@ void sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
     }
     brick_begin(&bricks, cells, slices, ray, &way);
     bool inside = true, known = true; /* known: way stands where the ray enters the brick */
-    uint64_t n_cells = 1;
-    while (inside && way.t <= walk->limit) {
+    uint64_t n_cells = 1, n_nonempty = 0;
+    aset_real limit = walk->limit; /* kept here, for a visit may change what walk points to */
+    while (inside && way.t <= limit) {
         if ((brick_map(cells, bricks.block) & mask) == 0) {
             inside = brick_step(&bricks, slices, ray, &way);
             known = false;
@@ -258,18 +259,19 @@ void sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
         brick_load(&b, cells, bricks.block, faces);
         do {
             if ((b.marks[way.axis] >> cells_place(way.voxel) & 1) != 0) {
-                walk->nonempty++;
-                walk->limit = visit_side(space, walk, &way, &b, faces[way.axis], held);
+                n_nonempty++;
+                walk->limit = limit = visit_side(space, walk, &way, &b, faces[way.axis], held);
             }
             inside = dda_step(&way, slices, ray);
-            n_cells += inside && way.t <= walk->limit;
+            n_cells += inside && way.t <= limit;
             left = brick_left(&way);
-        } while (inside && !left && way.t <= walk->limit);
+        } while (inside && !left && way.t <= limit);
         if (inside && left) {
             inside = brick_cross(&bricks, slices, ray, &way, way.axis);
         }
     }
-    walk->cells += n_cells + (known ? 0 : brick_count_rest(slices, ray, &way, inside, walk->limit));
+    walk->nonempty += n_nonempty;
+    walk->cells += n_cells + (known ? 0 : brick_count_rest(slices, ray, &way, inside, limit));
 }
 
 void sides_each(const aset_space *space, cell_look look, void *context) {

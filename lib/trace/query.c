@@ -120,8 +120,7 @@ static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const pro
 
 #endif
 
-/* Makes the ray ready; from outside it is moved near the scene. By how much. */
-static aset_real make_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
+aset_real query_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
     aset_vec3 low, high;
     aset_real t_in, t_out;
     *ray = probe_make(origin, direction);
@@ -151,7 +150,7 @@ static aset_real make_ready(probe *ray, const aset_scene *scene, aset_vec3 origi
 bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                    bool approximate, aset_statistics *statistics) {
     probe ray;
-    aset_real moved = make_ready(&ray, tracer->scene, origin, direction);
+    aset_real moved = query_ready(&ray, tracer->scene, origin, direction);
     hit->near = probe_origin(&ray);
     hit->curtailed = false;
 #if ASET_WITH_APPROXIMATION
@@ -188,7 +187,7 @@ bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction,
     (void)approximate;
     probe ray;
     exact_query q;
-    aset_real moved = make_ready(&ray, tracer->scene, origin, direction);
+    aset_real moved = query_ready(&ray, tracer->scene, origin, direction);
     return exact(&q, tracer, &ray, t_max - moved, true, statistics);
 }
 

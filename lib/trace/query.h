@@ -4,6 +4,7 @@
 
 #include "aset/trace.h"
 #include "base/vec.h"
+#include "scene/shape.h"
 
 /* What a closest-hit query found. */
 typedef struct query_hit {
@@ -15,6 +16,9 @@ typedef struct query_hit {
     int face;        /* approximate: axis * 2, + 1 going down */
     bool curtailed;  /* approximate: the ray was trapped, and hit nothing */
 } query_hit;
+
+/* Makes a ray of unit direction ready; from outside it is moved near the scene. By how much. */
+aset_real query_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction);
 
 /* direction: of unit length. False: nothing hit (or curtailed). */
 bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
