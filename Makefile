@@ -166,6 +166,9 @@ bench-instructions: $(BUILD)/tests/bench ## the same in instructions a ray (need
 bench-peers: $(BUILD)/tests/bench_peers ## ours beside Embree 3, if it is installed: build and picture, as ratios
 	@$(BUILD)/tests/bench_peers $(ARGS)
 
+plan-check: $(BUILD)/aset ## a plan's expectations against what happens, on the seven SPD scenes (minutes)
+	bash tests/plan-check.sh $(BUILD)/aset $(BUILD)/plan-check
+
 tables: $(BUILD)/aset ## the paper's Tables 1 to 4 beside ours, into docs/tables.md
 	$(BUILD)/aset tables --markdown -o docs/tables.md
 
@@ -209,5 +212,5 @@ help: ## show this text
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
 .PHONY: all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
-  hp9000 methods method-costs bench bench-instructions bench-peers bench-walk tables prices pictures deps install clean help
+  hp9000 methods method-costs bench bench-instructions bench-peers bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

@@ -42,7 +42,7 @@ int main(int argc, char **argv) {
     aset_picture picture = {.pixels = row, .on_row = write_row, .context = &picture};
     const aset_counts limits = {.objects = PLAN_OBJECTS, .coordinates = PLAN_COORDINATES, .materials = PLAN_MATERIALS,
                                 .lights = PLAN_LIGHTS};
-    const aset_space_options options = {.divisions = {PLAN_DIVISIONS, PLAN_DIVISIONS, PLAN_DIVISIONS}};
+    const aset_space_options options = {.divisions = {PLAN_DIVISIONS}};
     FILE *file = argc > 1 ? fopen(argv[1], "rb") : NULL;
     if (file == NULL) {
         fprintf(stderr, "planned: expected a scene file\n");

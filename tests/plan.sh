@@ -15,7 +15,7 @@ check() { # name, command ...
         echo "not ok $name: $(tail -n 1 "$dir/log")"
     fi
 }
-value() { sed -n "s/.*\"$1\":\"\{0,1\}\([a-z0-9.]*\).*/\1/p" "$dir/plan.json"; }
+value() { sed -n "s/.*\"$1\":\"\{0,1\}\([a-z0-9.x]*\).*/\1/p" "$dir/plan.json"; }
 try() { # scene, size, memory, further words of the plan
     scene=$1
     size=$2

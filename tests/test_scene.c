@@ -320,6 +320,7 @@ static void test_scene__refused_lights_and_objects_leave_room_for_others(void **
     assert_int_equal(sink.sphere(sink.context, &somewhere, 1), ASET_OK);
     assert_int_equal(sink.material(sink.context, &second), ASET_OK);
     assert_int_equal(sink.sphere(sink.context, &somewhere, 1), ASET_ERR_NOMEM);
+    assert_int_equal(sink.sphere(sink.context, &somewhere, 1), ASET_ERR_NOMEM); /* not even at the second time */
     assert_int_equal(sink.material(sink.context, &first), ASET_OK);
     assert_int_equal(sink.sphere(sink.context, &elsewhere, 1), ASET_OK);
     assert_int_equal(sink.sphere(sink.context, &elsewhere, 1), ASET_ERR_NOMEM);

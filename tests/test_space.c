@@ -44,13 +44,14 @@ typedef enum ray_sort {
     THROUGH_CORNERS,
     ALONG_BOX,
     FROM_SURFACE,
+    IN_SURFACE,
     FROM_FAR,
     RAY_SORTS
 } ray_sort;
 
 static const char *const sort_names[RAY_SORTS] = {"from outside", "from inside", "along an axis", "nearly along an axis",
                                                   "in a slice", "from a slice", "through corners", "along a box",
-                                                  "from a surface", "from far"};
+                                                  "from a surface", "in a surface", "from far"};
 
 static aset_real random_slice(random_state *r, const aset_space *space, int a) {
     return slices_plane(&space->slices, a, (int32_t)random_below(r, space->slices.n[a] + 1));
@@ -151,18 +152,36 @@ static void put_along_box(aset_ray *ray, random_state *r, const aset_scene *scen
     }
 }
 
-static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *scene) {
+/*
+ * From a hit onwards: any way, or in the surface's own plane, where t is a quotient of two numbers near 0 and nothing but the clamp
+ * to the object's box holds it.
+ */
+static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *scene, bool in_surface) {
+    aset_vec3 shading = {0, 0, 1}, normal = {0, 0, 1};
     ray->origin = dvec_real(random_in_scene(r, scene, 1));
     for (int trial = 0; trial < 10; trial++) {
-        aim(ray, r, scene);
+        aset_vec3 low, high;
         uint32_t object = random_below(r, scene->counts.objects);
+        aset_object_bounds(scene, object, &low, &high);
+        dvec span = dvec_sub(dvec_of(high), dvec_of(low)), target = dvec_of(low);
+        target.x += span.x * random_between(r, 0, 1);
+        target.y += span.y * random_between(r, 0, 1);
+        target.z += span.z * random_between(r, 0, 1);
+        dvec to = dvec_sub(target, dvec_of(ray->origin));
+        ray->direction = dvec_length(to) > 0 ? dvec_real(dvec_unit(to)) : real3(0, 0, 1);
         aset_real t = object_hit(scene, object, ray->origin, ray->direction);
         if (t < REAL_INFINITY) {
             ray->origin = dvec_real(dvec_along(dvec_of(ray->origin), (double)t, dvec_of(ray->direction)));
+            object_normals(scene, object, ray->origin, &shading, &normal);
             break;
         }
     }
     ray->direction = random_direction(r);
+    if (in_surface) {
+        dvec along = dvec_unit(dvec_cross(dvec_of(ray->direction), dvec_of(normal)));
+        ray->direction = dvec_real(along);
+        ray->origin = dvec_real(dvec_along(dvec_of(ray->origin), -size_of(scene) * random_between(r, 0, 1), along));
+    }
 }
 
 static aset_ray random_ray(random_state *r, const aset_scene *scene, const aset_space *space, ray_sort sort) {
@@ -178,7 +197,8 @@ static aset_ray random_ray(random_state *r, const aset_scene *scene, const aset_
     case FROM_SLICE: put_on_slices(&ray, r, scene, space, false); break;
     case THROUGH_CORNERS: put_through_corners(&ray, r, space); break;
     case ALONG_BOX: put_along_box(&ray, r, scene); break;
-    case FROM_SURFACE: put_on_surface(&ray, r, scene); break;
+    case FROM_SURFACE: put_on_surface(&ray, r, scene, false); break;
+    case IN_SURFACE: put_on_surface(&ray, r, scene, true); break;
     case FROM_FAR: {
         double distance = size_of(scene) * pow(10, random_between(r, 0.5, 7));
         dvec near = random_chance(r, 0.5) ? random_in_scene(r, scene, 0) : random_on_box(r, scene);
@@ -493,7 +513,7 @@ static void test_space__objects_in_one_plane(void **state) {
 /* From as far as a million scenes, straight at the corners of what lies in one plane: nearly everything is up to rounding. */
 static void test_space__far_rays_at_the_edges_of_a_flat_scene(void **state) {
     (void)state;
-    for (uint64_t i = 0; i < 60; i++) {
+    for (uint64_t i = 0; i < 3 * COUNT_OF(forms); i++) {
         random_state r = random_start(seed_of(400 + i));
         int axis = (int)(i % 3);
         model m;
@@ -510,9 +530,9 @@ static void test_space__far_rays_at_the_edges_of_a_flat_scene(void **state) {
         }
         stage_open_model(&s, &m, ROOM);
         stage_space(&s, &brute, &aset_brute, 1, 1, 1);
-        stage_space(&s, &space, &aset_mset, 7, 7, 7);
+        build_form(&s, &space, i / 3);
         aset_tracer a = stage_tracer(&s, &brute), b = stage_tracer(&s, &space);
-        for (int k = 0; k < 1000; k++) {
+        for (int k = 0; k < 1500; k++) {
             aset_ray ray = random_ray(&r, &s.scene, &space, FROM_FAR);
             aset_hit expected, hit;
             bool expected_found, found;
@@ -862,6 +882,37 @@ static void test_space__objects_are_marked_on_their_six_layers(void **state) {
     }
 }
 
+/* The voxel that holds x is exactly the last whose lower slice is not above x: to the last bit, on every slice. */
+static void test_space__slices_are_located_exactly(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 40; i++) {
+        random_state r = random_start(seed_of(310 + i));
+        model m;
+        stage s;
+        aset_space space;
+        uint32_t n = 1 + random_below(&r, 100);
+        model_random(&m, &r, 10, random_between(&r, 0.1, 1000), 0.01, 4);
+        model_move(&m, 1, dvec_of(random_in_cube(&r, 1000)));
+        stage_open_model(&s, &m, ROOM);
+        stage_space(&s, &space, &aset_mset, n, 1, 2);
+        for (int32_t k = 1; k < (int32_t)n; k++) {
+            aset_real plane = slices_plane(&space.slices, 0, k);
+#if ASET_REAL_BITS == 32
+            aset_real below = nextafterf(plane, -REAL_INFINITY), above = nextafterf(plane, REAL_INFINITY);
+#else
+            aset_real below = nextafter(plane, -REAL_INFINITY), above = nextafter(plane, REAL_INFINITY);
+#endif
+            check(slices_locate(&space.slices, 0, plane) == k, SEED ", slice %d of %" PRIu32, r.seed, (int)k, n);
+            check(slices_locate(&space.slices, 0, below) == k - 1, SEED ", slice %d of %" PRIu32, r.seed, (int)k, n);
+            check(slices_locate(&space.slices, 0, above) == k, SEED ", slice %d of %" PRIu32, r.seed, (int)k, n);
+        }
+        check(slices_locate(&space.slices, 0, R(-1e30)) == 0, SEED, r.seed);
+        check(slices_locate(&space.slices, 0, R(1e30)) == (int32_t)n - 1, SEED, r.seed);
+        stage_close(&s);
+        model_free(&m);
+    }
+}
+
 /* The slices span the scene's box, and a little more: no object's box reaches beyond the outermost. */
 static void test_space__slices_span_the_scene(void **state) {
     (void)state;
@@ -1041,6 +1092,7 @@ int main(void) {
         cmocka_unit_test(test_space__mset_tests_far_fewer_objects),
         cmocka_unit_test(test_space__brute_counts_every_test_and_hit),
         cmocka_unit_test(test_space__objects_are_marked_on_their_six_layers),
+        cmocka_unit_test(test_space__slices_are_located_exactly),
         cmocka_unit_test(test_space__slices_span_the_scene),
         cmocka_unit_test(test_space__brute_is_one_cell),
         cmocka_unit_test(test_space__refuses_bad_arguments),

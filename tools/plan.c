@@ -33,9 +33,9 @@ static const char *kinds_words(const plan_setting *s) {
 }
 
 static void print_setting(const plan *p, const plan_setting *s) {
-    (void)printf("--method %-4s --grid %-3" PRIu32 " --approx %-6s --approx-depth %" PRIu32 ": %8zu bytes, %.2f of the exact time, ",
-                 aset_method_name(s->method), s->grid, kinds_words(s), s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes,
-                 s->seconds / p->exact_seconds);
+    (void)printf("--method %-4s --grid %" PRIu32 "x%" PRIu32 "x%" PRIu32 " --approx %-6s --approx-depth %" PRIu32 ": %8zu bytes, %.2f of the exact time, ",
+                 aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds_words(s),
+                 s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes, s->seconds / p->exact_seconds);
     if (s->approx_kinds == 0) {
         (void)printf("exact%s\n", s->fits ? "" : ", does not fit");
     } else {
@@ -44,10 +44,10 @@ static void print_setting(const plan *p, const plan_setting *s) {
 }
 
 static void print_json(const plan *p, const plan_setting *s) {
-    (void)printf("{\"method\":\"%s\",\"grid\":%" PRIu32 ",\"approx\":\"%s\",\"approx_depth\":%" PRIu32
+    (void)printf("{\"method\":\"%s\",\"grid\":\"%" PRIu32 "x%" PRIu32 "x%" PRIu32 "\",\"approx\":\"%s\",\"approx_depth\":%" PRIu32
                  ",\"bytes\":%zu,\"relative_time\":%.4f,\"seconds\":%.4f,\"psnr\":%.2f}\n",
-                 aset_method_name(s->method), s->grid, kinds_words(s), s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes,
-                 s->seconds / p->exact_seconds, s->seconds, s->psnr);
+                 aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds_words(s),
+                 s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes, s->seconds / p->exact_seconds, s->seconds, s->psnr);
 }
 
 static bool tell(const request *r, const plan *p, const measured *m) {

@@ -7,7 +7,7 @@
 /* One way of drawing that was probed. */
 typedef struct plan_setting {
     const aset_method *method; /* MSET or SET */
-    uint32_t grid;             /* divisions on every axis; SET: at the most */
+    uint32_t grid[3];          /* divisions; SET: at the most */
     uint32_t approx_kinds, approx_depth;
     uint32_t textures; /* in the summary's list; 0: exact */
     aset_space_size size;

@@ -43,8 +43,9 @@ static void print_sizes(FILE *f, const aset_scene *scene, const plan_setting *s,
     const aset_counts *c = &scene->counts;
     (void)fprintf(f, "#define PLAN_OBJECTS %" PRIu32 "\n#define PLAN_COORDINATES %" PRIu64 "\n", c->objects, c->coordinates);
     (void)fprintf(f, "#define PLAN_MATERIALS %" PRIu32 "\n#define PLAN_LIGHTS %" PRIu32 "\n", c->materials, c->lights);
-    (void)fprintf(f, "#define PLAN_METHOD aset_%s\n#define PLAN_DIVISIONS %" PRIu32 "\n#define PLAN_BLOCKS %" PRIu32 "\n",
-                  aset_method_name(s->method), s->grid, s->size.n_blocks);
+    (void)fprintf(f, "#define PLAN_METHOD aset_%s\n#define PLAN_DIVISIONS %" PRIu32 ", %" PRIu32 ", %" PRIu32 "\n",
+                  aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2]);
+    (void)fprintf(f, "#define PLAN_BLOCKS %" PRIu32 "\n", s->size.n_blocks);
     (void)fprintf(f, "#define PLAN_CELLS %" PRIu32 "\n#define PLAN_REFERENCES %" PRIu32 "\n", s->size.n_cells,
                   s->size.n_references);
     (void)fprintf(f, "#define PLAN_TEXTURES %" PRIu32 "\n#define PLAN_DEPTH %" PRIu32 "\n", s->textures, depth);

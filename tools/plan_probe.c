@@ -41,14 +41,15 @@ typedef struct built {
     size_t summary_bytes;
 } built;
 
-static aset_space_options options_of(uint32_t grid) {
+static aset_space_options options_of(const uint32_t grid[3]) {
     aset_space_options options;
     memset(&options, 0, sizeof options);
-    options.divisions[0] = options.divisions[1] = options.divisions[2] = grid;
+    memcpy(options.divisions, grid, sizeof options.divisions);
     return options;
 }
 
-static bool build(built *b, measured *m, const char *path, const aset_method *method, uint32_t grid, aset_space_size *size) {
+static bool build(built *b, measured *m, const char *path, const aset_method *method, const uint32_t grid[3],
+                  aset_space_size *size) {
     aset_space_options options = options_of(grid);
     aset_arena arena;
     if (!measured_space(m, path, method, &options, size, NULL)) {
@@ -63,7 +64,7 @@ static bool build(built *b, measured *m, const char *path, const aset_method *me
     done = done && aset_summary_build(&b->summary, &b->space, 0, &arena) == ASET_OK;
     b->build_s = cpu_seconds() - start;
     if (!done) {
-        tool_error(path, 0, "plan: the machine has no memory for %u divisions", (unsigned)grid);
+        tool_error(path, 0, "plan: the machine has no memory for %u divisions", (unsigned)grid[0]);
         free(b->block);
         return false;
     }
@@ -110,7 +111,7 @@ typedef struct probing {
 } probing;
 
 /* Every level at one number of divisions; the exact one comes first and is the reference of the others. */
-static void probe_levels(plan *p, probing *q, const built *b, const aset_method *method, uint32_t grid,
+static void probe_levels(plan *p, probing *q, const built *b, const aset_method *method, const uint32_t grid[3],
                          const aset_space_size *size) {
     double least[N_LEVELS], start = tool_seconds();
     uint32_t pixels = q->view.width_px * q->view.height_px;
@@ -129,7 +130,7 @@ static void probe_levels(plan *p, probing *q, const built *b, const aset_method 
     for (size_t i = 0; i < N_LEVELS; i++) {
         plan_setting *s = &p->settings[p->n++];
         s->method = method;
-        s->grid = grid;
+        memcpy(s->grid, grid, sizeof s->grid);
         s->approx_kinds = levels[i].kinds;
         s->approx_depth = levels[i].depth;
         s->textures = i == 0 ? 0 : b->summary.n_textures;
@@ -160,26 +161,32 @@ static bool better(const plan_setting *a, const plan_setting *b, const plan_wish
     return a->psnr != b->psnr ? a->psnr > b->psnr : a->seconds < b->seconds;
 }
 
-/* Divisions to try: the automatic ones and geometric steps below them, each once. */
-static int choose_grids(const measured *m, uint32_t grids[STEPS]) {
-    uint32_t n[3];
-    int n_grids = 0;
-    aset_auto_divisions(&m->scene, 0, n);
-    double largest = n[0] > n[1] ? n[0] : n[1];
-    largest = n[2] > largest ? n[2] : largest;
-    for (int i = 0; i < STEPS; i++, largest *= 0.6) {
-        uint32_t grid = largest < 2 ? 1 : (uint32_t)(largest + 0.5);
-        if (n_grids == 0 || grid < grids[n_grids - 1]) {
-            grids[n_grids++] = grid;
-        }
+/*
+ * Divisions to try: a step down from the automatic ones. SET takes the largest of them on every axis: its slices stand where the
+ * objects end, and a thin axis may hold many.
+ */
+static bool step_down(const measured *m, int step, const aset_method *method, uint32_t grid[3]) {
+    double scale = 1;
+    uint32_t largest = 1;
+    for (int i = 0; i < step; i++) {
+        scale *= 0.6;
     }
-    return n_grids;
+    aset_auto_divisions(&m->scene, 0, grid);
+    for (int a = 0; a < 3; a++) {
+        grid[a] = grid[a] * scale < 1 ? 1 : (uint32_t)(grid[a] * scale + 0.5);
+        largest = grid[a] > largest ? grid[a] : largest;
+    }
+    if (method == &aset_set) {
+        grid[0] = grid[1] = grid[2] = largest;
+    }
+    return largest > 1 || step == 0;
 }
 
 /* The smallest need of all: exact, a single voxel. */
 static bool measure_least(plan *p, measured *m, const char *path, const plan_wish *wish) {
     plan_setting least;
-    aset_space_options options = options_of(1);
+    const uint32_t one[3] = {1, 1, 1};
+    aset_space_options options = options_of(one);
     memset(&least, 0, sizeof least);
     if (!measured_space(m, path, &aset_mset, &options, &least.size, NULL)) {
         return false;
@@ -198,7 +205,8 @@ static bool any_fits(const plan *p) {
 }
 
 /* One candidate's space, at every level. */
-static bool probe(plan *p, probing *q, measured *m, const char *path, const aset_method *method, uint32_t grid) {
+static bool probe(plan *p, probing *q, measured *m, const char *path, const aset_method *method,
+                  const uint32_t grid[3]) {
     built b;
     aset_space_size size;
     if (!build(&b, m, path, method, grid, &size)) {
@@ -211,18 +219,18 @@ static bool probe(plan *p, probing *q, measured *m, const char *path, const aset
 
 static bool probe_all(plan *p, probing *q, measured *m, const char *path) {
     static const aset_method *const methods[] = {&aset_mset, &aset_set};
-    uint32_t grids[STEPS];
-    int n_grids = choose_grids(m, grids);
+    const uint32_t one[3] = {1, 1, 1};
+    uint32_t grid[3];
     double start = tool_seconds();
-    for (int i = 0; i < n_grids; i++) {
+    for (int i = 0; i < STEPS; i++) {
         for (size_t k = 0; k < sizeof methods / sizeof methods[0]; k++) {
             bool late = tool_seconds() - start > PROBE_SECONDS && any_fits(p);
-            if (!late && !probe(p, q, m, path, methods[k], grids[i])) {
+            if (!late && step_down(m, i, methods[k], grid) && !probe(p, q, m, path, methods[k], grid)) {
                 return false;
             }
         }
     }
-    return any_fits(p) || probe(p, q, m, path, &aset_mset, 1);
+    return any_fits(p) || probe(p, q, m, path, &aset_mset, one);
 }
 
 bool plan_make(plan *p, measured *m, const char *path, const plan_wish *wish) {
