@@ -16,13 +16,15 @@
 
 /* Where a ray from outside is made to start: this part of the scene's size before the box. */
 #define NEAR R(0.0625)
+#define APPROACHES 4
 
 typedef struct exact_query {
     walk_request walk;
     const aset_scene *scene;
     const probe *ray;
-    aset_real end;  /* of the ray */
-    aset_real best; /* t of the nearest hit so far, or the ray's end */
+    aset_real moved, t_max; /* a hit counts if t + moved < t_max: in the caller's numbers, not in the moved ray's */
+    aset_real end;          /* no hit that counts lies behind this t */
+    aset_real best;         /* t of the nearest hit so far, or end */
     uint32_t object;
     bool any; /* the first hit ends it */
     uint64_t tests, hits;
@@ -34,8 +36,9 @@ static aset_real visit_exact(walk_request *walk, const walk_cell *cell) {
         uint32_t object = cell->objects[i];
         aset_real t = object_nearest(q->scene, object, q->ray, q->end);
         q->tests++;
-        bool nearer = t < q->best || (t == q->best && q->object != ASET_NO_OBJECT && object < q->object);
-        q->hits += t < q->end;
+        bool counts = t + q->moved < q->t_max;
+        bool nearer = counts && (t < q->best || (t == q->best && object < q->object)); /* ASET_NO_OBJECT is the largest */
+        q->hits += counts;
         if (nearer) {
             q->best = t;
             q->object = object;
@@ -48,15 +51,23 @@ static aset_real visit_exact(walk_request *walk, const walk_cell *cell) {
     return q->best;
 }
 
-static bool exact(exact_query *q, const aset_tracer *tracer, const probe *ray, aset_real t_max, bool any,
+/* t_max as the moved ray counts it, and the rounding of that. */
+static aset_real end_of(aset_real moved, aset_real t_max) {
+    return t_max - moved + 4 * REAL_UNIT * moved;
+}
+
+static bool exact(exact_query *q, const aset_tracer *tracer, const probe *ray, aset_real moved, aset_real t_max, bool any,
                   aset_statistics *statistics) {
+    q->moved = moved;
+    q->t_max = t_max;
+    q->end = end_of(moved, t_max);
     q->walk.visit = visit_exact;
-    q->walk.limit = t_max;
+    q->walk.limit = q->end;
     q->walk.wants_references = true;
     q->walk.cells = q->walk.nonempty = 0;
     q->scene = tracer->scene;
     q->ray = ray;
-    q->best = q->end = t_max;
+    q->best = q->end;
     q->object = ASET_NO_OBJECT;
     q->any = any;
     q->tests = q->hits = 0;
@@ -97,18 +108,18 @@ static bool trapped(const aset_tracer *tracer, aset_real t) {
     return tracer->curtail_more ? t > bound : t < bound;
 }
 
-static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const probe *ray, aset_real t_max,
+static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const probe *ray, aset_real moved, aset_real t_max,
                             aset_statistics *statistics) {
     approximate_query q;
     q.walk.visit = visit_approximate;
-    q.walk.limit = t_max;
+    q.walk.limit = end_of(moved, t_max);
     q.walk.wants_references = false;
     q.walk.cells = q.walk.nonempty = 0;
     q.found = false;
     tracer->space->method->go(tracer->space, ray, &q.walk);
     statistics->cells_visited += q.walk.cells;
     statistics->nonempty_visited += q.walk.nonempty;
-    if (!q.found || !(q.t < t_max)) {
+    if (!q.found || !(q.t + moved < t_max)) {
         return false;
     }
     hit->t = q.t;
@@ -120,29 +131,35 @@ static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const pro
 
 #endif
 
+/*
+ * How far the ray is from the scene's box: t at which it enters, 0 if it misses or has entered. The box is grown by more than any
+ * object's, and by the rounding of its sides' t from here: a ray that misses it is refused by the clamp of every object too.
+ */
+static aset_real distance_to(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real margin) {
+    aset_vec3 origin = probe_origin(ray);
+    aset_real away = real_max(vec_largest(vec_sub(low, origin)), vec_largest(vec_sub(high, origin)));
+    aset_real grown = 4 * margin + 4 * REAL_UNIT * away, t_in, t_out;
+    aset_vec3 m = vec(grown, grown, grown);
+    return probe_box(ray, vec_sub(low, m), vec_add(high, m), &t_in, &t_out) && t_in > 0 ? t_in : 0;
+}
+
 aset_real query_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
     aset_vec3 low, high;
-    aset_real t_in, t_out;
+    aset_real moved = 0;
     *ray = probe_make(origin, direction);
     if (!aset_scene_bounds(scene, &low, &high)) {
         return 0;
     }
-    /*
-     * The box is grown by more than any object's, and by the rounding of its sides' t from here: a ray that misses it is
-     * refused by the clamp of every object too.
-     */
-    aset_real away = real_max(vec_largest(vec_sub(low, origin)), vec_largest(vec_sub(high, origin)));
-    aset_real grown = 4 * scene->margin + 4 * REAL_UNIT * away;
-    aset_vec3 margin = vec(grown, grown, grown);
-    if (!probe_box(ray, vec_sub(low, margin), vec_add(high, margin), &t_in, &t_out)) {
-        return 0;
-    }
-    aset_real moved = t_in - NEAR * vec_largest(vec_sub(high, low));
-    if (!(moved > 0)) {
-        return 0;
-    }
-    for (int a = 0; a < 3; a++) {
-        ray->origin[a] += moved * ray->direction[a];
+    aset_real near = NEAR * vec_largest(vec_sub(high, low));
+    for (int i = 0; i < APPROACHES; i++) { /* from very far away the first move ends up somewhere near: so again */
+        aset_real step = distance_to(ray, low, high, scene->margin) - near;
+        if (!(step > 0)) {
+            break;
+        }
+        for (int a = 0; a < 3; a++) {
+            ray->origin[a] += step * ray->direction[a];
+        }
+        moved += step;
     }
     return moved;
 }
@@ -155,7 +172,7 @@ bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, 
     hit->curtailed = false;
 #if ASET_WITH_APPROXIMATION
     if (approximate) {
-        bool found = approximate_hit(hit, tracer, &ray, t_max - moved, statistics);
+        bool found = approximate_hit(hit, tracer, &ray, moved, t_max, statistics);
         if (!found) {
             return false;
         }
@@ -169,7 +186,7 @@ bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, 
 #endif
     (void)approximate;
     exact_query q;
-    bool found = exact(&q, tracer, &ray, t_max - moved, false, statistics);
+    bool found = exact(&q, tracer, &ray, moved, t_max, false, statistics);
     hit->t_near = q.best;
     hit->t = q.best + moved;
     hit->object = q.object;
@@ -188,7 +205,7 @@ bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction,
     probe ray;
     exact_query q;
     aset_real moved = query_ready(&ray, tracer->scene, origin, direction);
-    return exact(&q, tracer, &ray, t_max - moved, true, statistics);
+    return exact(&q, tracer, &ray, moved, t_max, true, statistics);
 }
 
 void query_surface(aset_hit *surface, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction) {
