@@ -356,7 +356,7 @@ static void test_summary__nearest_by_every_part(void **state) {
 #if ASET_WITH_SPHERES
 static void test_summary__automatic_capacity(void **state) {
     (void)state;
-    static const uint32_t cases[][2] = {{1, 16}, {2, 32}, {3, 64}, {4, 64}, {5, 128}, {8, 128}, {9, 256}, {40, 1024}};
+    static const uint32_t cases[][2] = {{1, 32}, {2, 64}, {3, 128}, {4, 128}, {5, 256}, {8, 256}, {9, 512}, {40, 2048}};
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         model m;
         stage s;

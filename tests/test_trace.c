@@ -618,7 +618,8 @@ static bool side_at(const studio *st, const aset_ray *ray, int a, int32_t k, dou
 static double first_side(const studio *st, const aset_ray *ray, uint32_t *cell, int *axis, bool *undecided) {
     double first = HUGE_VAL;
     bool doubt = false;
-    *undecided = false;
+    dvec d = dvec_of(ray->direction);
+    *undecided = fmin(fabs(d.x), fmin(fabs(d.y), fabs(d.z))) < 0.02; /* nearly in a slice */
     for (int a = 0; a < 3; a++) {
         for (int32_t k = 0; k <= (int32_t)st->space.slices.n[a]; k++) {
             double t;
@@ -663,14 +664,14 @@ static void check_approximate_ray(studio *st, const aset_ray *ray, uint64_t seed
     if (found) {
         dvec normal = dvec_of(hit.geometric), direction = dvec_of(ray->direction);
         ++*hits;
-        check(fabs((double)hit.t - t) < 1e-4 && hit.t > 0, SEED ": %g, not %g", seed, (double)hit.t, t);
+        check(fabs((double)hit.t - t) < 5e-4 && hit.t > 0, SEED ": %g, not %g", seed, (double)hit.t, t);
         check(hit.object == ASET_NO_OBJECT && hit.cell == cell, SEED, seed);
         check(hit.material >= st->summary.textures && hit.material < st->summary.textures + st->summary.n_textures, SEED,
               seed);
         check(dvec_length(normal) == 1 && dvec_dot(normal, direction) < 0, SEED, seed);
         check(fabs(axis == 0 ? normal.x : axis == 1 ? normal.y : normal.z) == 1, SEED, seed);
         check(memcmp(&hit.normal, &hit.geometric, sizeof hit.normal) == 0, SEED, seed);
-        check(dvec_length(dvec_sub(dvec_of(hit.point), dvec_along(dvec_of(ray->origin), t, direction))) < 1e-4, SEED, seed);
+        check(dvec_length(dvec_sub(dvec_of(hit.point), dvec_along(dvec_of(ray->origin), t, direction))) < 5e-4, SEED, seed);
     }
 }
 

@@ -29,7 +29,10 @@ typedef struct aset_summary {
 
 #define ASET_TEXTURES_MAX 65536u
 
-/* The capacity taken when 0 is asked for: 16 for each material, rounded up to a power of two, from 16 to 4096. */
+/*
+ * The capacity taken when 0 is asked for: 32 for each material, rounded up to a power of two, from 16 to 4096. It bounds the
+ * list; the bytes are those of the textures that there are.
+ */
 uint32_t aset_summary_capacity(const aset_scene *scene);
 
 /*

@@ -16,7 +16,7 @@
 
 #define AUTO_TEXTURES_MIN 16u
 #define AUTO_TEXTURES_MAX 4096u
-#define AUTO_TEXTURES_PER_MATERIAL 16u
+#define AUTO_TEXTURES_PER_MATERIAL 32u
 
 uint32_t aset_summary_capacity(const aset_scene *scene) {
     uint32_t capacity = AUTO_TEXTURES_MIN;
