@@ -513,7 +513,7 @@ static void test_trace__t_counts_in_lengths_of_the_direction(void **state) {
         aset_hit hit, other;
         bool found, again;
         assert_int_equal(aset_closest_hit(&found, &hit, &st.tracer, &ray, false, NULL), ASET_OK);
-        static const double lengths[] = {0.25, 1024, 1.0 / 1048576, 3e15, 1e-20};
+        static const double lengths[] = {0.25, 1024, 1.0 / 1048576, 1125899906842624.0, 1.0 / 1180591620717411303424.0};
         for (size_t k = 0; k < COUNT_OF(lengths); k++) {
             aset_ray longer = ray;
             longer.direction = dvec_real(scaled(lengths[k], dvec_of(ray.direction)));

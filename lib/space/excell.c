@@ -73,22 +73,10 @@ static void excell_leaf(void *context, uint32_t number, const voxel_box *region,
     p->references += n;
 }
 
-/* The depth is given in octree levels, of three halvings each. */
 static halving excell_halving(const aset_space_size *size, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
                               uint64_t room, excell_pass *pass) {
-    halving h;
-    memset(&h, 0, sizeof h);
-    h.boxes = boxes;
-    h.n_objects = n_objects;
-    h.leaf = size->leaf;
-    h.depth = 3 * size->depth;
-    h.ways = 2;
-    for (int a = 0; a < 3; a++) {
-        pass->full[a] = size->depth;
-        h.size[a] = 1u << size->depth;
-    }
-    h.lists = lists;
-    h.room = room;
+    halving h = halving_make(size, 2, boxes, n_objects, lists, room);
+    pass->full[0] = pass->full[1] = pass->full[2] = size->depth;
     h.context = pass;
     h.inner = excell_inner;
     h.leaf_made = excell_leaf;

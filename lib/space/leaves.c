@@ -3,6 +3,8 @@
 
 #include "base/bits.h"
 
+#include <string.h>
+
 /* The references of a leaf whose objects the ray meets here for the first time. */
 static void visit_leaf(const aset_space *space, const probe *ray, walk_request *walk, const stay *s, uint32_t begin,
                        uint32_t end, walk_cell *cell) {
@@ -100,6 +102,21 @@ void leaves_reserve(aset_space *space, const aset_space_size *size, aset_arena *
     refs->first = aset_arena_alloc(arena, ((size_t)size->n_cells + 1) * 4, ASET_CATEGORY_REFERENCES);
     refs->objects = aset_arena_alloc(arena, (size_t)ASET_BYTES_PACKED(refs->n, refs->width), ASET_CATEGORY_REFERENCES);
     space->boxes = aset_arena_alloc(arena, (size_t)n * sizeof(aset_box), ASET_CATEGORY_REFERENCES);
+}
+
+halving halving_make(const aset_space_size *size, int ways, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
+                     uint64_t room) {
+    halving h;
+    memset(&h, 0, sizeof h);
+    h.boxes = boxes;
+    h.n_objects = n_objects;
+    h.leaf = size->leaf;
+    h.depth = ways == 8 ? size->depth : 3 * size->depth;
+    h.ways = ways;
+    h.size[0] = h.size[1] = h.size[2] = 1u << size->depth;
+    h.lists = lists;
+    h.room = room;
+    return h;
 }
 
 /* One level of the halving in progress. */

@@ -49,6 +49,13 @@ typedef struct halving {
                       uint32_t n);
 } halving;
 
+/*
+ * A halving within the size's limits, of a whole of 2^depth voxels along each axis; in turn (ways 2), three halvings make a level.
+ * What is called for regions and leaves is still to be set.
+ */
+halving halving_make(const aset_space_size *size, int ways, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
+                     uint64_t room);
+
 /* ASET_ERR_NOMEM if the lists need more room. Halvings nest as deep as depth: the stack here is of fixed size. */
 aset_status halve(halving *h);
 

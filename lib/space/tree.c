@@ -15,8 +15,6 @@
 
 #include "base/bits.h"
 
-#include <string.h>
-
 #define LEAF 0x80000000u
 #define EMPTY 0xffffffffu
 
@@ -56,16 +54,7 @@ static void tree_leaf(void *context, uint32_t number, const voxel_box *region, u
 
 static halving tree_halving(const aset_space_size *size, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
                             uint64_t room, tree_pass *pass) {
-    halving h;
-    memset(&h, 0, sizeof h);
-    h.boxes = boxes;
-    h.n_objects = n_objects;
-    h.leaf = size->leaf;
-    h.depth = size->depth;
-    h.ways = 8;
-    memcpy(h.size, size->divisions, sizeof h.size);
-    h.lists = lists;
-    h.room = room;
+    halving h = halving_make(size, 8, boxes, n_objects, lists, room);
     h.context = pass;
     h.inner = tree_inner;
     h.leaf_made = tree_leaf;
