@@ -2,7 +2,6 @@
 #include <aset/aset.h>
 
 #include <stdio.h>
-#include <string.h>
 
 #define SIDE 256
 #define CHECK(call)                                                                                                    \
