@@ -1,6 +1,6 @@
 /*
- * test_memory.c - what is measured is what is taken: exact arenas work, eight bytes less fail cleanly with the bytes that were
- * missing, macros are constant expressions and tell the same, and no arena size crashes anything.
+ * test_memory.c - what is measured is what is taken: exact arenas work, eight bytes less fail cleanly with the bytes that
+ * were missing, macros are constant expressions and tell the same, and no arena size crashes anything.
  */
 #include "support/support.h"
 
@@ -274,8 +274,8 @@ static void test_memory__scratch_takes_what_its_macro_says(void **state) {
 
 #if ASET_WITH_SPHERES
 /*
- * Five spheres, each well inside one voxel of its own of a grid of 4 x 4 x 4: six sides each; the grid is one block for each of
- * the six faces. Two materials, so two textures, since no two spheres share a cell.
+ * Five spheres, each well inside one voxel of its own of a grid of 4 x 4 x 4: six sides each; the grid is one block for each
+ * of the six faces. Two materials, so two textures, since no two spheres share a cell.
  */
 enum { EXAMPLE_OBJECTS = 5, EXAMPLE_CELLS = 30, EXAMPLE_REFERENCES = 30, EXAMPLE_BLOCKS = 6, EXAMPLE_TEXTURES = 2 };
 
@@ -437,7 +437,7 @@ static void draw_a_little(const whole *w) {
     assert_int_equal(aset_render_rows(&tracer, &view, &picture, 4, 1, &scratch, NULL), ASET_OK);
 }
 
-/* From no byte to more than enough: always a clean status, the guards intact, and the bytes named missing suffice for the step. */
+/* From no byte to more than enough: always a clean status, the guards intact, and a number of missing bytes. */
 static void sweep(const model *m, const aset_space_options *options, uint64_t seed) {
     aset_counter counter;
     aset_sink sink = aset_counter_sink(&counter);

@@ -569,8 +569,8 @@ static void test_scene__abandoned_polygon_is_forgotten(void **state) {
 }
 
 /*
- * A source may go on after a refused polygon; the counter's counts must still be exactly what the builder needs, and the builder
- * must not have kept the material that only the refused polygon used.
+ * A source may go on after a refused polygon; the counter's counts must still be exactly what the builder needs, and the
+ * builder must not have kept the material that only the refused polygon used.
  */
 static void test_scene__refused_polygon_does_not_keep_its_material(void **state) {
     (void)state;

@@ -1,6 +1,6 @@
 /*
- * test_shape.c - a ray against one object of each kind, compared with the same geometry in plain double precision; normals; and
- * that rays do not slip through closed surfaces.
+ * test_shape.c - a ray against one object of each kind, compared with the same geometry in plain double precision; normals;
+ * and that rays do not slip through closed surfaces.
  */
 #include "support/support.h"
 

@@ -1,6 +1,6 @@
 /*
- * test_space.c - spaces against brute force on the same seeded rays, bit for bit; that no object is met twice; that every cell
- * is marked as the rule says; structure counts; hostile scenes.
+ * test_space.c - spaces against brute force on the same seeded rays, bit for bit; that no object is met twice; that every
+ * cell is marked as the rule says; structure counts; hostile scenes.
  */
 #include "support/support.h"
 
@@ -153,8 +153,8 @@ static void put_along_box(aset_ray *ray, random_state *r, const aset_scene *scen
 }
 
 /*
- * From a hit onwards: any way, or in the surface's own plane, where t is a quotient of two numbers near 0 and nothing but the clamp
- * to the object's box holds it.
+ * From a hit onwards: any way, or in the surface's own plane, where t is a quotient of two numbers near 0 and nothing but
+ * the clamp to the object's box holds it.
  */
 static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *scene, bool in_surface) {
     aset_vec3 shading = {0, 0, 1}, normal = {0, 0, 1};
@@ -285,7 +285,8 @@ static aset_real inspect(walk_request *walk, const walk_cell *cell) {
         in->twice = in->twice || in->duel->seen[object] > 0;
         in->duel->seen[object] = 1;
         if (cell->face != FACE_NONE) {
-            in->late = in->late || cell->t > object_hit(&in->duel->stage->scene, object, in->ray->origin, in->ray->direction);
+            const aset_scene *scene = &in->duel->stage->scene;
+            in->late = in->late || cell->t > object_hit(scene, object, in->ray->origin, in->ray->direction);
         }
     }
     return REAL_INFINITY;
@@ -305,8 +306,8 @@ static aset_ray brought_near(const aset_scene *scene, const aset_ray *ray) {
 }
 
 /*
- * Goes all the way: no object twice, cells in order, every object that the ray hits by itself among those met, and none met in
- * a cell that begins behind its hit (else a walk that stops at a nearer hit could lose it).
+ * Goes all the way: no object twice, cells in order, every object that the ray hits by itself among those met, and none met
+ * in a cell that begins behind its hit (else a walk that stops at a nearer hit could lose it).
  */
 static void inspect_walk(duel *d, const aset_ray *ray, ray_sort sort) {
     const aset_scene *scene = &d->stage->scene;
@@ -454,7 +455,8 @@ static void test_space__all_equal_brute_away_from_the_origin(void **state) {
     static const struct {
         double scale;
         dvec offset;
-    } moves[] = {{1, {1000, -2000, 500}}, {1e-3, {10, 0, -7}}, {1e-6, {0, 0, 0}}, {1e5, {1e6, 0, 1e5}}, {1e12, {0, 1e13, 0}}};
+    } moves[] = {{1, {1000, -2000, 500}}, {1e-3, {10, 0, -7}}, {1e-6, {0, 0, 0}}, {1e5, {1e6, 0, 1e5}},
+                 {1e12, {0, 1e13, 0}}};
     for (size_t i = 0; i < COUNT_OF(moves); i++) {
         random_state r = random_start(seed_of(30 + i));
         model m;
@@ -510,7 +512,7 @@ static void test_space__objects_in_one_plane(void **state) {
     }
 }
 
-/* From as far as a million scenes, straight at the corners of what lies in one plane: nearly everything is up to rounding. */
+/* From as far as a million scenes, straight at the corners of what lies in one plane: nearly all is up to rounding. */
 static void test_space__far_rays_at_the_edges_of_a_flat_scene(void **state) {
     (void)state;
     for (uint64_t i = 0; i < 3 * COUNT_OF(forms); i++) {

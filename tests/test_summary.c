@@ -299,7 +299,7 @@ static void test_summary__full_list_gives_the_nearest_and_counts_it(void **state
     }
 }
 
-/* Nearness looks at every part: each of two textures in the list is the nearest to what differs from it a little in one part. */
+/* Nearness looks at every part: of two textures in the list, the one that differs less in one part is taken. */
 static void test_summary__nearest_by_every_part(void **state) {
     (void)state;
     aset_material first = plain_material();

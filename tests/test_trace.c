@@ -519,8 +519,8 @@ static void test_trace__t_counts_in_lengths_of_the_direction(void **state) {
             longer.direction = dvec_real(scaled(lengths[k], dvec_of(ray.direction)));
             longer.t_max = found ? (aset_real)(1.001 * (double)hit.t / lengths[k]) : REAL_INFINITY;
             assert_int_equal(aset_closest_hit(&again, &other, &st.tracer, &longer, false, NULL), ASET_OK);
-            check(found == again && (!found || fabs((double)other.t * lengths[k] / (double)hit.t - 1) < 1e-3), SEED ", ray %d",
-                  r.seed, i);
+            check(found == again && (!found || fabs((double)other.t * lengths[k] / (double)hit.t - 1) < 1e-3),
+                  SEED ", ray %d", r.seed, i);
             longer.t_max = found ? (aset_real)(0.999 * (double)hit.t / lengths[k]) : 0;
             assert_int_equal(aset_any_hit(&again, &st.tracer, &longer, false, NULL), ASET_OK);
             check(!again, SEED ", ray %d", r.seed, i);
@@ -739,7 +739,8 @@ static void test_trace__kinds_and_depth_decide_which_rays_are_approximate(void *
         st.tracer.depth = level;
         if (level > 0) {
             assert_int_equal(aset_render_rows(&st.tracer, &view, &picture, 0, 12, &st.scratch, &below), ASET_OK);
-            assert_true(below.approx_hits == 0 && below.shadow > 0 && (level < 2 || !ASET_WITH_REFLECTION || below.reflected > 0));
+            assert_true(below.approx_hits == 0 && below.shadow > 0);
+            assert_true(level < 2 || !ASET_WITH_REFLECTION || below.reflected > 0);
         }
         for (uint32_t kinds = 0; kinds <= ASET_ALL_KINDS; kinds++) {
             check_policy(&st, &picture, &view, kinds, level, &below);
@@ -905,7 +906,8 @@ static uint32_t differing(studio *st, const aset_view *view, const aset_picture 
     for (uint32_t k = 0; k < columns * rows; k++) {
         double sum[3] = {0};
         for (uint32_t i = 0; i < samples * samples; i++) {
-            double x = k % columns + shift + (i % samples + 0.5) / samples, y = k / columns + shift + (i / samples + 0.5) / samples;
+            double x = k % columns + shift + (i % samples + 0.5) / samples;
+            double y = k / columns + shift + (i / samples + 0.5) / samples;
             aset_ray ray = eye_ray(view, p->width, p->height, x, y);
             dvec c = colour_of(st, ray.origin, dvec_of(ray.direction));
             sum[0] += fmin(c.x, 1);
@@ -1015,7 +1017,8 @@ static void test_trace__formats(void **state) {
         assert_true(a[3] == 0 || a[3] == 255);
         n_wrong += (a[3] == 255) != (st.statistics.primary_hit == 1);
     }
-    check(n_clear > 50 && n_clear < 550 && n_wrong < 10, "%" PRIu32 " clear, %" PRIu32 " wrong", n_clear, n_wrong); /* edges may differ */
+    /* edges may differ */
+    check(n_clear > 50 && n_clear < 550 && n_wrong < 10, "%" PRIu32 " clear, %" PRIu32 " wrong", n_clear, n_wrong);
     st.tracer.samples = 2;
     draw(&st, &view, &rgba);
     for (uint32_t k = 0, n_parts = 0; k < 600; k++) {

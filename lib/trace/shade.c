@@ -47,18 +47,11 @@ static bool in_shadow(const aset_tracer *tracer, const shading *s, const light_r
 }
 
 /*
- * The normal that faces the lights: turned to the side that is seen. The SPD's rules take a transmitting surface's as given:
- * the far side of a glass sphere, seen from within, is lit from without (so Havran's counts for mount come out).
+ * The normal that faces the lights: turned to the side that is seen. The SPD's rules take it as given: the far side of a glass
+ * sphere, seen from within, is lit from without, and so is the inside of the teapot (so Havran's counts come out).
  */
 static aset_vec3 lit_normal(const aset_tracer *tracer, const shading *s) {
-#if ASET_WITH_REFRACTION
-    if (tracer->spd_rules && s->hit.material->transmittance > 0) {
-        return s->hit.normal;
-    }
-#else
-    (void)tracer;
-#endif
-    return s->normal;
+    return tracer->spd_rules ? s->hit.normal : s->normal;
 }
 
 static aset_real highlight(const shading *s, aset_vec3 normal, aset_vec3 to_light, aset_real n_dot_l) {

@@ -146,7 +146,7 @@ typedef struct stage {
     aset_scene scene;
 } stage;
 
-/* Counts, then builds a scene, with exactly the counter's limits, in an arena of its own that has room bytes left after it. */
+/* Counts, then builds a scene, with exactly the counter's limits, in an arena of its own; room bytes are left after it. */
 void stage_open(stage *s, stage_source source, const void *context, size_t room);
 void stage_open_model(stage *s, const model *m, size_t room);
 /* A procedural scene by name; false if the library was compiled without what it needs. */
