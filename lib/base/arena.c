@@ -36,7 +36,7 @@ void *aset_arena_alloc(aset_arena *arena, size_t bytes, aset_category category) 
     if (!aset_arena_fits(arena, rounded)) {
         return NULL;
     }
-    void *start = arena->block + arena->used;
+    void *start = arena->block != NULL ? arena->block + arena->used : NULL; /* no block: no bytes were asked for */
     arena->used += rounded;
     arena->used_by[category] += rounded;
     if (arena->used > arena->peak) {
