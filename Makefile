@@ -166,7 +166,7 @@ bench-instructions: $(BUILD)/tests/bench ## the same in instructions a ray (need
 bench-peers: $(BUILD)/tests/bench_peers ## ours beside Embree 3, if it is installed: build and picture, as ratios
 	@$(BUILD)/tests/bench_peers $(ARGS)
 
-plan-check: $(BUILD)/aset ## a plan's expectations against what happens, on the seven SPD scenes (minutes)
+plan-check: $(BUILD)/aset ## a plan's expectations against what happens, on the seven SPD scenes and three odd ones (minutes)
 	bash tests/plan-check.sh $(BUILD)/aset $(BUILD)/plan-check
 
 tables: $(BUILD)/aset ## the paper's Tables 1 to 4 beside ours, into docs/tables.md

@@ -21,9 +21,11 @@ try() { # scene, size, memory, further words of the plan
     size=$2
     memory=$3
     shift 3
-    "$aset" scene "$scene" --size "$size" | sed 's/^resolution .*/resolution 64 64/' > "$dir/scene.nff"
+    if [ -f "$dir/$scene.nff" ]; then cat "$dir/$scene.nff"; else "$aset" scene "$scene" --size "$size"; fi |
+        sed 's/^resolution .*/resolution 64 64/' > "$dir/scene.nff"
     check "$scene-plans" "$aset" plan "$dir/scene.nff" --memory "$memory" --header "$dir/plan.h" --json "$@"
     cp "$dir/log" "$dir/plan.json"
+    value method >> "$dir/methods"
     check "$scene-compiles" "$cc" -std=c99 -O1 -ffp-contract=off -include "$dir/plan.h" -Iinclude -Ilib examples/planned.c \
         lib/base/*.c lib/scene/*.c lib/space/*.c lib/approx/*.c lib/trace/*.c lib/load/*.c -lm -o "$dir/planned"
     check "$scene-runs" sh -c "'$dir/planned' '$dir/scene.nff' > '$dir/planned.ppm'"
@@ -38,11 +40,15 @@ try() { # scene, size, memory, further words of the plan
         passed=$((passed + 1))
     fi
 }
+bash "$(dirname "$0")/odd-scenes.sh" "$dir"
 try snow 1 60K --error 20
 try gears 2 256K
+try tree 6 256K
+try corridor - 50K
 try tetra 4 64K
 if "$aset" plan "$dir/scene.nff" --memory 5000 2> "$dir/log"; then failed=$((failed + 1)); else passed=$((passed + 1)); fi
 need=$(sed -n 's/.*needs \([0-9]*\) bytes.*/\1/p' "$dir/log")
-check least-fits "$aset" plan "$dir/scene.nff" --memory "$need"
+try tetra 4 "$need"
+for method in grid set mset brute; do check "some-plan-takes-$method" grep -q "^$method\$" "$dir/methods"; done
 echo "plan: $passed passed, $failed failed"
 [ $failed = 0 ]

@@ -15,12 +15,14 @@ static const char help[] =
     "      --header FILE    write the sizes of this scene and setting, and the switches it needs, as a C header\n"
     "  -s, --size WxH       the picture; default the scene's, else 512x512\n"
     "      --depth N        rays in a chain; default 5\n"
-    "      --all            print every setting that was probed\n"
+    "      --all            print every setting that was probed, before the one chosen\n"
     "      --json           the plan as JSON\n"
     "  -h, --help           this text\n"
     "\n"
     "Bytes are exact. Times and PSNR are expected from a sample of the picture's rays; time is said as the ratio to the exact\n"
-    "picture by MSET at automatic divisions. Settings are MSET and SET with up to 5 numbers of divisions, exact or approximate in three ways.\n";
+    "picture by MSET at automatic divisions. Settings are MSET, grid and SET with up to 5 numbers of divisions\n"
+    "each, more where none of them fits, and at last brute force; exact, and with --error or --time also approximate in three\n"
+    "ways. Those that fit are probed for about a second, the finest first.\n";
 
 typedef struct request {
     plan_wish wish;
@@ -33,7 +35,8 @@ static const char *kinds_words(const plan_setting *s) {
 }
 
 static void print_setting(const plan *p, const plan_setting *s) {
-    (void)printf("--method %-4s --grid %" PRIu32 "x%" PRIu32 "x%" PRIu32 " --approx %-6s --approx-depth %" PRIu32 ": %8zu bytes, %.2f of the exact time, ",
+    (void)printf("--method %-4s --grid %" PRIu32 "x%" PRIu32 "x%" PRIu32 " --approx %-6s --approx-depth %" PRIu32
+                 ": %8zu bytes, %.2f of the exact time, ",
                  aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds_words(s),
                  s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes, s->seconds / p->exact_seconds);
     if (s->approx_kinds == 0) {
@@ -44,7 +47,8 @@ static void print_setting(const plan *p, const plan_setting *s) {
 }
 
 static void print_json(const plan *p, const plan_setting *s) {
-    (void)printf("{\"method\":\"%s\",\"grid\":\"%" PRIu32 "x%" PRIu32 "x%" PRIu32 "\",\"approx\":\"%s\",\"approx_depth\":%" PRIu32
+    (void)printf("{\"method\":\"%s\",\"grid\":\"%" PRIu32 "x%" PRIu32 "x%" PRIu32
+                 "\",\"approx\":\"%s\",\"approx_depth\":%" PRIu32
                  ",\"bytes\":%zu,\"relative_time\":%.4f,\"seconds\":%.4f,\"psnr\":%.2f}\n",
                  aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds_words(s),
                  s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes, s->seconds / p->exact_seconds, s->seconds, s->psnr);

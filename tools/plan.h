@@ -6,7 +6,7 @@
 
 /* One way of drawing that was probed. */
 typedef struct plan_setting {
-    const aset_method *method; /* MSET or SET */
+    const aset_method *method; /* MSET, grid, SET or brute force */
     uint32_t grid[3];          /* divisions; SET: at the most */
     uint32_t approx_kinds, approx_depth;
     uint32_t textures; /* in the summary's list; 0: exact */

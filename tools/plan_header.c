@@ -1,7 +1,7 @@
 /*
- * plan_header.c - a plan as a C header: the switches of what the scene does not use, and the sizes of exactly this scene and setting
- * as constant expressions. A program and the library are both compiled with it (-include); a size that does not come out to
- * the byte does not compile.
+ * plan_header.c - a plan as a C header: the switches of what the scene does not use, and the sizes of exactly this scene
+ * and setting as constant expressions. A program and the library are both compiled with it (-include); a size that does not
+ * come out to the byte does not compile.
  */
 #include "plan.h"
 
@@ -39,6 +39,21 @@ static void print_switches(FILE *f, const aset_scene *scene, const plan_setting 
     (void)fprintf(f, "#define ASET_WITH_APPROXIMATION %d\n", s->approx_kinds != 0);
 }
 
+/* The space's part of the bytes, as an expression of the header's own constants. */
+static void print_space(FILE *f, const plan_setting *s) {
+    static const struct {
+        const aset_method *method;
+        const char *macro;
+    } macros[] = {{&aset_mset, "ASET_BYTES_MSET"}, {&aset_set, "ASET_BYTES_SET"}, {&aset_grid, "ASET_BYTES_GRID"}};
+    for (size_t i = 0; i < sizeof macros / sizeof macros[0]; i++) {
+        if (macros[i].method == s->method) {
+            (void)fprintf(f, "     %s(%" PRIu32 ", %" PRIu32 ", %" PRIu32 ", "
+                             "PLAN_BLOCKS, PLAN_REFERENCES, PLAN_OBJECTS) + \\\n",
+                          macros[i].macro, s->size.divisions[0], s->size.divisions[1], s->size.divisions[2]);
+        }
+    } /* brute force has no bytes of its own */
+}
+
 static void print_sizes(FILE *f, const aset_scene *scene, const plan_setting *s, uint32_t depth) {
     const aset_counts *c = &scene->counts;
     (void)fprintf(f, "#define PLAN_OBJECTS %" PRIu32 "\n#define PLAN_COORDINATES %" PRIu64 "\n", c->objects, c->coordinates);
@@ -54,11 +69,10 @@ static void print_sizes(FILE *f, const aset_scene *scene, const plan_setting *s,
     (void)fprintf(f,
                   "\n/* The arena, to the byte: use it where aset/aset.h is included. */\n"
                   "#define PLAN_BYTES \\\n"
-                  "    (ASET_BYTES_SCENE(PLAN_OBJECTS, PLAN_COORDINATES, PLAN_MATERIALS, PLAN_LIGHTS) + \\\n"
-                  "     %s(%" PRIu32 ", %" PRIu32 ", %" PRIu32 ", PLAN_BLOCKS, PLAN_REFERENCES, PLAN_OBJECTS) + \\\n"
-                  "     %sASET_BYTES_SCRATCH(PLAN_DEPTH))\n",
-                  s->method == &aset_set ? "ASET_BYTES_SET" : "ASET_BYTES_MSET", s->size.divisions[0],
-                  s->size.divisions[1], s->size.divisions[2], s->approx_kinds != 0 ? "ASET_BYTES_SUMMARY(PLAN_CELLS, PLAN_TEXTURES) + " : "");
+                  "    (ASET_BYTES_SCENE(PLAN_OBJECTS, PLAN_COORDINATES, PLAN_MATERIALS, PLAN_LIGHTS) + \\\n");
+    print_space(f, s);
+    (void)fprintf(f, "     %sASET_BYTES_SCRATCH(PLAN_DEPTH))\n",
+                  s->approx_kinds != 0 ? "ASET_BYTES_SUMMARY(PLAN_CELLS, PLAN_TEXTURES) + " : "");
 }
 
 bool plan_write_header(const char *path, const measured *m, const char *scene_path, const plan_setting *s, uint32_t depth) {

@@ -1,27 +1,47 @@
 /*
- * plan_probe.c - the probes behind `aset plan`: a coarse sample of the picture's own pixels, drawn with each candidate.
+ * plan_probe.c - the probes behind `aset plan`: rays of the picture's own pixels, drawn with each candidate.
  *
- * A probe draws PROBE x PROBE pixels through the same view: the colours along a sparse set of the whole picture's rays, so that
- * the mean squared error and the time for a ray are samples of the picture's own. The candidates differ in method (MSET, SET), in
- * divisions (geometric steps down from the automatic ones) and in what is approximate. The bytes are no estimate: measured.
- * Probing stops when its time is used up and something fits; what was not probed is not chosen.
+ * Two looks. A coarse one ranks the candidates that fit: method (MSET, grid, SET), divisions (geometric steps down from the
+ * automatic ones) and what is approximate; brute force, which takes the fewest bytes of all, stands last. A fine one then
+ * draws the chosen setting and the unit of time, MSET exact at automatic divisions, by turns, round after round on new
+ * pixels, until the time is used up. A setting that does not hold there what the coarse look promised gives way to the next.
+ *
+ * A sample is a set of runs of neighbouring pixels, one at a pseudo-random place in each tile of the picture: neighbours, for
+ * what the caches hold is part of the time. The bytes are no estimate: measured. The error of an approximation is told
+ * only where enough runs show one: a mirror that no run has met would pass for exact.
  */
 #include "metrics.h"
 #include "plan.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#define PROBE 64u
-#define ROUNDS 3         /* interleaved; the least counts, for noise only adds */
-#define PROBE_SECONDS 1.2 /* after which no further candidate is probed */
+#define RUN 4u              /* neighbouring pixels */
+#define RUNS_MAX 2048u      /* in a sample */
+#define COARSE_SECONDS 0.012 /* of the unit's drawing, for one sample */
+#define LONG_SECONDS 0.1     /* a candidate's coarse sample; if longer, a part of it has to do */
+#define THIN 8u
+#define FINE_SECONDS 0.05
+#define COARSE_RUNS 300u
+#define COARSE_END 0.9      /* wall clock since the start; after it no further candidate is probed once something fits */
+#define FINE_END 1.3
+#define FINE_TURNS 2u       /* drawings of one sample; the least counts, for noise only adds */
+#define PIXELS_MAX 200000u  /* drawn by the fine look at most: the picture may be a small one */
+#define DOUBT_MAX 0.2       /* relative standard error of the mean squared error: within 3 dB by more than twice that */
+#define MARGIN_DB 0.5       /* above the PSNR asked for */
 #define STEPS 5
+#define STEP 0.6
+#define SET_MOST 160u        /* divisions of SET to begin with; its cells grow by their cube, and 100 slices pass for many */
+#define QUICK 4              /* times the unit: what nobody would draw by brute force */
+#define SLOWER 1.5          /* than a step before: no coarser divisions of this method, where time counts */
 #define R_CURTAIL ((aset_real)0.5)
 
 /* What is measured is the processor's time: a busy machine makes everything wait, but computes no more. */
 static double cpu_seconds(void) {
-    return (double)clock() / CLOCKS_PER_SEC;
+    struct timespec t;
+    return clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t) == 0 ? (double)t.tv_sec + 1e-9 * (double)t.tv_nsec : 0;
 }
 
 typedef struct level {
@@ -37,9 +57,41 @@ typedef struct built {
     void *block;
     aset_space space;
     aset_summary summary;
-    double build_s;
+    aset_space_size size;
+    double space_s, summary_s; /* to build */
     size_t summary_bytes;
 } built;
+
+typedef struct sample {
+    uint32_t n_runs;
+    uint16_t x[RUNS_MAX], y[RUNS_MAX]; /* of each run's first pixel */
+    uint32_t run;                      /* pixels in each */
+} sample;
+
+typedef struct probing {
+    measured *m;
+    const plan_wish *wish;
+    const char *path;
+    double start, unit_rate; /* unit_rate: seconds for an eye ray, exact */
+    built unit;
+    aset_scratch scratch;
+    aset_vec3 forward, right, down; /* of the camera */
+    sample sample;
+    uint8_t exact[RUNS_MAX * RUN * 3], drawn[RUNS_MAX * RUN * 3];
+    bool fine[PLAN_SETTINGS_MAX], refused[PLAN_SETTINGS_MAX];
+} probing;
+
+/* Sums over the runs of one or more samples: what the mean squared error is, and how sure. */
+typedef struct error_sums {
+    double squares, squares_of_runs;
+    uint64_t values;
+} error_sums;
+
+static double elapsed(const probing *q) {
+    return tool_seconds() - q->start;
+}
+
+/* --- spaces --- */
 
 static aset_space_options options_of(const uint32_t grid[3]) {
     aset_space_options options;
@@ -48,151 +100,223 @@ static aset_space_options options_of(const uint32_t grid[3]) {
     return options;
 }
 
-static bool build(built *b, measured *m, const char *path, const aset_method *method, const uint32_t grid[3],
-                  aset_space_size *size) {
+/* Builds what was measured into b->size; with_summary also what cells remember. */
+static bool build(built *b, const probing *q, const aset_method *method, const uint32_t grid[3], bool with_summary) {
     aset_space_options options = options_of(grid);
     aset_arena arena;
-    if (!measured_space(m, path, method, &options, size, NULL)) {
-        return false;
+    size_t bytes = b->size.total + (1u << 20);
+    if (with_summary) {
+        bytes += ASET_BYTES_SUMMARY(b->size.n_cells, aset_summary_capacity(&q->m->scene));
     }
-    size_t bytes = size->total + ASET_BYTES_SUMMARY(size->n_cells, aset_summary_capacity(&m->scene)) + (1u << 20);
     b->block = malloc(bytes);
     double start = cpu_seconds();
     bool done = b->block != NULL && aset_arena_init(&arena, b->block, bytes) == ASET_OK &&
-                aset_space_build(&b->space, &m->scene, method, &options, &arena) == ASET_OK;
+                aset_space_build(&b->space, &q->m->scene, method, &options, &arena) == ASET_OK;
+    b->space_s = cpu_seconds() - start;
     size_t before = done ? arena.used : 0;
-    done = done && aset_summary_build(&b->summary, &b->space, 0, &arena) == ASET_OK;
-    b->build_s = cpu_seconds() - start;
+    done = done && (!with_summary || aset_summary_build(&b->summary, &b->space, 0, &arena) == ASET_OK);
+    b->summary_s = cpu_seconds() - start - b->space_s;
     if (!done) {
-        tool_error(path, 0, "plan: the machine has no memory for %u divisions", (unsigned)grid[0]);
+        tool_error(q->path, 0, "plan: the machine has no memory for %u divisions", (unsigned)grid[0]);
         free(b->block);
+        b->block = NULL;
         return false;
     }
     b->summary_bytes = arena.used - before;
     return true;
 }
 
-/* Draws the probe. Seconds. */
-static double draw(const measured *m, const aset_view *view, const built *b, const level *l, uint32_t depth,
-                   aset_scratch *scratch, uint8_t *rgb) {
-    aset_tracer tracer;
-    aset_picture picture;
-    memset(&tracer, 0, sizeof tracer);
-    memset(&picture, 0, sizeof picture);
-    tracer.scene = &m->scene;
-    tracer.space = &b->space;
-    tracer.summary = l->kinds != 0 ? &b->summary : NULL;
-    tracer.approx_kinds = l->kinds;
-    tracer.approx_depth = l->depth;
-    tracer.curtail = R_CURTAIL;
-    tracer.depth = depth;
-    picture.width = view->width_px;
-    picture.height = view->height_px;
-    picture.format = ASET_RGB888;
-    picture.pixels = rgb;
-    picture.stride = (size_t)view->width_px * 3;
-    double start = cpu_seconds();
-    (void)aset_render_rows(&tracer, view, &picture, 0, view->height_px, scratch, NULL);
-    return cpu_seconds() - start;
+static double build_seconds(const built *b, uint32_t kinds) {
+    return b->space_s + (kinds != 0 ? b->summary_s : 0);
 }
 
 /* What the arena takes in all: a summary may stand where the building scratch was. */
-static size_t bytes_of(const measured *m, const plan_setting *s, size_t summary, uint32_t depth) {
-    size_t kept = s->size.cells + s->size.references + s->size.voxels + summary;
-    return m->scene_bytes + ASET_BYTES_SCRATCH(depth) + (kept > s->size.total ? kept : s->size.total);
+static size_t bytes_of(const probing *q, const aset_space_size *size, size_t summary) {
+    size_t kept = size->cells + size->references + size->voxels + summary;
+    return q->m->scene_bytes + ASET_BYTES_SCRATCH(q->wish->depth) + (kept > size->total ? kept : size->total);
 }
 
-typedef struct probing {
-    const measured *m;
-    const plan_wish *wish;
-    aset_view view;
-    aset_scratch scratch;
-    uint8_t exact[PROBE * PROBE * 3], drawn[PROBE * PROBE * 3];
-} probing;
+/* --- pixels --- */
 
-/* Every level at one number of divisions; the exact one comes first and is the reference of the others. */
-static void probe_levels(plan *p, probing *q, const built *b, const aset_method *method, const uint32_t grid[3],
-                         const aset_space_size *size) {
-    double least[N_LEVELS], start = tool_seconds();
-    uint32_t pixels = q->view.width_px * q->view.height_px;
-    double scale = (double)q->wish->width * q->wish->height / pixels;
-    for (int round = 0; round < ROUNDS && (round == 0 || tool_seconds() - start < PROBE_SECONDS / 8); round++) {
-        for (size_t i = 0; i < N_LEVELS; i++) {
-            double seconds = draw(q->m, &q->view, b, &levels[i], q->wish->depth, &q->scratch, i == 0 ? q->exact : q->drawn);
-            least[i] = round == 0 || seconds < least[i] ? seconds : least[i];
-            if (round == 0) {
-                plan_setting *s = &p->settings[p->n + (int)i];
-                metrics_difference d = metrics_differ(q->exact, q->drawn, q->view.width_px, q->view.height_px);
-                s->psnr = i == 0 ? METRICS_PSNR_MAX : metrics_psnr(&d);
-            }
+static aset_vec3 combine(aset_vec3 a, double s, aset_vec3 b, double t) {
+    aset_vec3 c = {(aset_real)(s * a.x + t * b.x), (aset_real)(s * a.y + t * b.y), (aset_real)(s * a.z + t * b.z)};
+    return c;
+}
+
+static aset_vec3 unit(aset_vec3 a) {
+    double length = sqrt((double)a.x * a.x + (double)a.y * a.y + (double)a.z * a.z);
+    return combine(a, 1 / length, a, 0);
+}
+
+static aset_vec3 cross(aset_vec3 a, aset_vec3 b) {
+    aset_vec3 c = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    return c;
+}
+
+static void aim(probing *q) {
+    const aset_view *v = &q->m->scene.view;
+    double half = v->height > 0 ? 0.5 * v->height : tan(v->angle_deg * (3.14159265358979323846 / 360));
+    double wide = half * q->wish->width / q->wish->height;
+    q->forward = unit(combine(v->at, 1, v->from, -1));
+    aset_vec3 right = unit(cross(q->forward, unit(v->up))), down = cross(q->forward, right);
+    q->right = combine(right, wide, right, 0);
+    q->down = combine(down, half, down, 0);
+}
+
+/* The ray through a pixel's centre. */
+static aset_ray ray_of(const probing *q, uint32_t x, uint32_t y) {
+    const aset_view *v = &q->m->scene.view;
+    aset_vec3 across = combine(q->right, (2 * x + 1.0) / q->wish->width - 1, q->down, (2 * y + 1.0) / q->wish->height - 1);
+    aset_ray ray;
+    ray.origin = v->height > 0 ? combine(v->from, 1, across, 1) : v->from;
+    ray.direction = v->height > 0 ? q->forward : unit(combine(q->forward, 1, across, 1));
+    ray.t_max = INFINITY;
+    return ray;
+}
+
+/* A pseudo-random number below n: Lehmer's generator with Park and Miller's multiplier (1988), its upper bits. */
+static uint32_t draw_number(uint32_t *state, uint32_t n) {
+    *state = (uint32_t)((uint64_t)*state * 16807u % 2147483647u);
+    return (uint32_t)((uint64_t)*state * n / 2147483647u);
+}
+
+/* About n runs (one at least), one in each tile. */
+static void sample_make(probing *q, uint32_t n, uint32_t seed) {
+    sample *s = &q->sample;
+    double width = q->wish->width, height = q->wish->height;
+    s->run = q->wish->width < RUN ? q->wish->width : RUN;
+    n = n < 1 ? 1 : n > RUNS_MAX ? RUNS_MAX : n;
+    double side = sqrt(width * height / n); /* of a tile, as square as may be, and at least one run of pixels */
+    uint32_t columns = (uint32_t)fmax(1, fmin(fmin(n, floor(width / s->run)), floor(width / side)));
+    uint32_t rows = (uint32_t)fmax(1, fmin(height, n / columns));
+    uint32_t state = 1 + seed * 7919u;
+    s->n_runs = 0;
+    for (uint32_t j = 0; j < rows; j++) {
+        for (uint32_t i = 0; i < columns && s->n_runs < RUNS_MAX; i++) {
+            uint32_t x = (uint32_t)((uint64_t)i * q->wish->width / columns);
+            uint32_t y = (uint32_t)((uint64_t)j * q->wish->height / rows);
+            uint32_t x_end = (uint32_t)((uint64_t)(i + 1) * q->wish->width / columns);
+            uint32_t y_end = (uint32_t)((uint64_t)(j + 1) * q->wish->height / rows);
+            s->x[s->n_runs] = (uint16_t)(x + draw_number(&state, x_end - x - s->run + 1));
+            s->y[s->n_runs++] = (uint16_t)(y + draw_number(&state, y_end - y));
         }
     }
-    for (size_t i = 0; i < N_LEVELS; i++) {
-        plan_setting *s = &p->settings[p->n++];
+}
+
+static uint8_t to_byte(aset_real x) {
+    return (uint8_t)((x > 0 ? (x < 1 ? x : 1) : 0) * 255 + (aset_real)0.5);
+}
+
+static void draw_run(const probing *q, const aset_tracer *tracer, uint32_t i, uint8_t *rgb) {
+    const sample *s = &q->sample;
+    aset_statistics ignored;
+    memset(&ignored, 0, sizeof ignored);
+    rgb += (size_t)i * s->run * 3;
+    for (uint32_t k = 0; k < s->run; k++, rgb += 3) {
+        aset_colour c = {0, 0, 0};
+        aset_scratch scratch = q->scratch;
+        aset_ray ray = ray_of(q, s->x[i] + k, s->y[i]);
+        (void)aset_ray_colour(&c, tracer, &ray, &scratch, &ignored); /* what it takes was checked by the loader */
+        rgb[0] = to_byte(c.r);
+        rgb[1] = to_byte(c.g);
+        rgb[2] = to_byte(c.b);
+    }
+}
+
+/* Draws the sample. Seconds; if one run of THIN says that it would take longer than limit, what all would take. */
+static double draw(const probing *q, const built *b, uint32_t kinds, uint32_t depth, double limit, uint8_t *rgb) {
+    aset_tracer tracer;
+    uint32_t n = q->sample.n_runs;
+    memset(&tracer, 0, sizeof tracer);
+    tracer.scene = &q->m->scene;
+    tracer.space = &b->space;
+    tracer.summary = kinds != 0 ? &b->summary : NULL;
+    tracer.approx_kinds = kinds;
+    tracer.approx_depth = depth;
+    tracer.curtail = R_CURTAIL;
+    tracer.depth = q->wish->depth;
+    double start = cpu_seconds();
+    for (uint32_t i = 0; limit < INFINITY && i < n; i += THIN) {
+        draw_run(q, &tracer, i, rgb);
+    }
+    double all = (cpu_seconds() - start) * n / ((n + THIN - 1) / THIN);
+    if (limit < INFINITY && all > limit) {
+        return all;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        if (limit >= INFINITY || i % THIN != 0) {
+            draw_run(q, &tracer, i, rgb);
+        }
+    }
+    return cpu_seconds() - start;
+}
+
+static void add_errors(error_sums *e, const probing *q) {
+    uint32_t n = q->sample.run * 3;
+    for (uint32_t i = 0; i < q->sample.n_runs; i++) {
+        double run = 0;
+        for (uint32_t k = i * n; k < (i + 1) * n; k++) {
+            double d = (double)q->exact[k] - q->drawn[k];
+            run += d * d;
+        }
+        e->squares += run;
+        e->squares_of_runs += run * run;
+        e->values += n;
+    }
+}
+
+static double psnr_of(const error_sums *e) {
+    double psnr = e->squares > 0 ? 10 * log10(255.0 * 255.0 * (double)e->values / e->squares) : METRICS_PSNR_MAX;
+    return psnr < METRICS_PSNR_MAX ? psnr : METRICS_PSNR_MAX;
+}
+
+/* Relative standard error of the mean square; no bound where nothing differs. */
+static double doubt_of(const error_sums *e) {
+    return e->squares > 0 ? sqrt(e->squares_of_runs) / e->squares : INFINITY;
+}
+
+static double pixels(const probing *q) {
+    return (double)q->wish->width * q->wish->height;
+}
+
+static double sample_pixels(const probing *q) {
+    return (double)q->sample.n_runs * q->sample.run;
+}
+
+/* Runs that take about so long at so many seconds a pixel; a few at least. */
+static uint32_t runs_within(double seconds, double rate, uint32_t fewest) {
+    double n = seconds / (rate * RUN + 1e-12);
+    return n < fewest ? fewest : n > RUNS_MAX ? RUNS_MAX : (uint32_t)n;
+}
+
+/* --- the coarse look --- */
+
+/* Every level at one number of divisions, or the exact one alone; q->exact holds the sample's exact colours. */
+static void probe_levels(plan *p, probing *q, const built *b, const aset_method *method, const uint32_t grid[3],
+                         size_t n_levels) {
+    for (size_t i = 0; i < n_levels && p->n < PLAN_SETTINGS_MAX; i++) {
+        plan_setting *s = &p->settings[p->n];
+        error_sums e = {0, 0, 0};
+        double seconds = draw(q, b, levels[i].kinds, levels[i].depth, LONG_SECONDS, q->drawn);
+        memset(s, 0, sizeof *s);
         s->method = method;
         memcpy(s->grid, grid, sizeof s->grid);
         s->approx_kinds = levels[i].kinds;
         s->approx_depth = levels[i].depth;
         s->textures = i == 0 ? 0 : b->summary.n_textures;
-        s->size = *size;
-        s->bytes = bytes_of(q->m, s, i == 0 ? 0 : b->summary_bytes, q->wish->depth);
-        s->seconds = b->build_s + least[i] * scale;
+        s->size = b->size;
+        s->bytes = bytes_of(q, &b->size, i == 0 ? 0 : b->summary_bytes);
+        s->seconds = build_seconds(b, levels[i].kinds) + seconds * pixels(q) / sample_pixels(q);
+        s->psnr = METRICS_PSNR_MAX;
         s->fits = s->bytes <= q->wish->memory;
-    }
-}
-
-/* Is a better than b, given what is asked for? Both fit. */
-static bool better(const plan_setting *a, const plan_setting *b, const plan_wish *wish) {
-    if (wish->time_ms > 0) {
-        bool fast_a = a->seconds * 1000 <= wish->time_ms, fast_b = b->seconds * 1000 <= wish->time_ms;
-        if (fast_a != fast_b || !fast_a) {
-            return fast_a != fast_b ? fast_a : a->seconds < b->seconds;
+        if (i > 0) {
+            add_errors(&e, q);
+            s->psnr = psnr_of(&e);
+            /* not drawn to the end, or not seen to differ: its error is not known */
+            q->refused[p->n] = seconds > LONG_SECONDS || e.squares <= 0;
         }
+        p->n++;
     }
-    if (wish->error_db > 0) {
-        bool good_a = a->psnr >= wish->error_db, good_b = b->psnr >= wish->error_db;
-        if (good_a != good_b) {
-            return good_a;
-        }
-        if (good_a) {
-            return a->seconds < b->seconds;
-        }
-    }
-    return a->psnr != b->psnr ? a->psnr > b->psnr : a->seconds < b->seconds;
-}
-
-/*
- * Divisions to try: a step down from the automatic ones. SET takes the largest of them on every axis: its slices stand where the
- * objects end, and a thin axis may hold many.
- */
-static bool step_down(const measured *m, int step, const aset_method *method, uint32_t grid[3]) {
-    double scale = 1;
-    uint32_t largest = 1;
-    for (int i = 0; i < step; i++) {
-        scale *= 0.6;
-    }
-    aset_auto_divisions(&m->scene, 0, grid);
-    for (int a = 0; a < 3; a++) {
-        grid[a] = grid[a] * scale < 1 ? 1 : (uint32_t)(grid[a] * scale + 0.5);
-        largest = grid[a] > largest ? grid[a] : largest;
-    }
-    if (method == &aset_set) {
-        grid[0] = grid[1] = grid[2] = largest;
-    }
-    return largest > 1 || step == 0;
-}
-
-/* The smallest need of all: exact, a single voxel. */
-static bool measure_least(plan *p, measured *m, const char *path, const plan_wish *wish) {
-    plan_setting least;
-    const uint32_t one[3] = {1, 1, 1};
-    aset_space_options options = options_of(one);
-    memset(&least, 0, sizeof least);
-    if (!measured_space(m, path, &aset_mset, &options, &least.size, NULL)) {
-        return false;
-    }
-    p->least_bytes = bytes_of(m, &least, 0, wish->depth);
-    return true;
 }
 
 static bool any_fits(const plan *p) {
@@ -204,62 +328,289 @@ static bool any_fits(const plan *p) {
     return false;
 }
 
-/* One candidate's space, at every level. */
-static bool probe(plan *p, probing *q, measured *m, const char *path, const aset_method *method,
-                  const uint32_t grid[3]) {
+/* Does something fit that is no slower than brute force might be? */
+static bool any_quick(const plan *p) {
+    for (int i = 0; i < p->n; i++) {
+        if (p->settings[i].fits && p->settings[i].seconds < QUICK * p->exact_seconds) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A candidate's levels, if it fits. An approximation takes no fewer bytes, and is asked for only with an error or a time. */
+static bool probe(plan *p, probing *q, const aset_method *method, const uint32_t grid[3]) {
     built b;
-    aset_space_size size;
-    if (!build(&b, m, path, method, grid, &size)) {
+    aset_space_options options = options_of(grid);
+    bool approximate = (q->wish->error_db > 0 || q->wish->time_ms > 0) && method != &aset_brute;
+    if (!measured_space(q->m, q->path, method, &options, &b.size, NULL)) {
         return false;
     }
-    probe_levels(p, q, &b, method, grid, &size);
+    if (bytes_of(q, &b.size, 0) > q->wish->memory) {
+        return true;
+    }
+    if (!build(&b, q, method, grid, approximate)) {
+        return false;
+    }
+    probe_levels(p, q, &b, method, grid, approximate ? N_LEVELS : 1);
     free(b.block);
     return true;
 }
 
-static bool probe_all(plan *p, probing *q, measured *m, const char *path) {
-    static const aset_method *const methods[] = {&aset_mset, &aset_set};
-    const uint32_t one[3] = {1, 1, 1};
+/*
+ * Divisions to try: a step down from the automatic ones. SET takes the largest of them on every axis: its slices stand where
+ * the objects end, and a thin axis may hold many.
+ */
+static bool step_down(const measured *m, int step, const aset_method *method, uint32_t grid[3]) {
+    uint32_t largest = 1;
+    double scale = pow(STEP, step);
+    aset_auto_divisions(&m->scene, 0, grid);
+    for (int a = 0; a < 3; a++) {
+        largest = grid[a] > largest ? grid[a] : largest;
+    }
+    if (method == &aset_set) {
+        grid[0] = grid[1] = grid[2] = largest = largest < SET_MOST ? largest : SET_MOST;
+    }
+    for (int a = 0; a < 3; a++) {
+        grid[a] = grid[a] * scale < 1 ? 1 : (uint32_t)(grid[a] * scale + 0.5);
+    }
+    return largest * scale >= 1.5 || step == 0;
+}
+
+/* The unit of time, kept for the fine look, and the coarse sample with its exact colours, as large as the time allows. */
+static bool probe_unit(plan *p, probing *q) {
     uint32_t grid[3];
-    double start = tool_seconds();
-    for (int i = 0; i < STEPS; i++) {
-        for (size_t k = 0; k < sizeof methods / sizeof methods[0]; k++) {
-            bool late = tool_seconds() - start > PROBE_SECONDS && any_fits(p);
-            if (!late && step_down(m, i, methods[k], grid) && !probe(p, q, m, path, methods[k], grid)) {
-                return false;
+    (void)step_down(q->m, 0, &aset_mset, grid);
+    aset_space_options options = options_of(grid);
+    if (!measured_space(q->m, q->path, &aset_mset, &options, &q->unit.size, NULL) ||
+        !build(&q->unit, q, &aset_mset, grid, false)) {
+        return false;
+    }
+    sample_make(q, 64, 1);
+    q->unit_rate = draw(q, &q->unit, 0, 0, INFINITY, q->exact) / sample_pixels(q);
+    uint32_t n = runs_within(COARSE_SECONDS, q->unit_rate, 64);
+    sample_make(q, n < COARSE_RUNS ? n : COARSE_RUNS, 2);
+    q->unit_rate = draw(q, &q->unit, 0, 0, INFINITY, q->exact) / sample_pixels(q);
+    p->exact_seconds = q->unit.space_s + q->unit_rate * pixels(q);
+    return true;
+}
+
+static const aset_method *const methods[] = {&aset_mset, &aset_grid, &aset_set};
+#define N_METHODS (sizeof methods / sizeof methods[0])
+
+/* One step of one method. *last: seconds of its step before, exact, 0 where none fitted; below 0: it only gets slower. */
+static bool probe_step(plan *p, probing *q, const aset_method *method, const uint32_t grid[3], double *last) {
+    int first = p->n;
+    if (any_fits(p) && (*last < 0 || elapsed(q) > COARSE_END)) {
+        return true;
+    }
+    if (!probe(p, q, method, grid)) {
+        return false;
+    }
+    if (p->n > first) {
+        double seconds = p->settings[first].seconds;
+        *last = *last > 0 && seconds > SLOWER * *last ? -1 : seconds;
+    }
+    return true;
+}
+
+static bool probe_all(plan *p, probing *q) {
+    const uint32_t one[3] = {1, 1, 1};
+    double last[N_METHODS] = {0};
+    uint32_t grid[3];
+    bool more = true;
+    for (int i = 0; more && (i < STEPS || !any_fits(p)); i++) {
+        more = false;
+        for (size_t k = 0; k < N_METHODS; k++) {
+            if (step_down(q->m, i, methods[k], grid)) {
+                more = true;
+                if (!probe_step(p, q, methods[k], grid, &last[k])) {
+                    return false;
+                }
             }
         }
     }
-    return any_fits(p) || probe(p, q, m, path, &aset_mset, one);
+    return any_quick(p) || probe(p, q, &aset_brute, one);
+}
+
+/* --- the choice --- */
+
+/* Close enough, also if the sample's PSNR is a little too high? */
+static bool accurate(const plan_setting *s, const plan_wish *wish) {
+    return s->approx_kinds == 0 || s->psnr >= wish->error_db + MARGIN_DB;
+}
+
+/* Is a better than b, given what is asked for? Both fit. */
+static bool better(const plan_setting *a, const plan_setting *b, const plan_wish *wish) {
+    if (wish->time_ms > 0) {
+        bool fast_a = a->seconds * 1000 <= wish->time_ms, fast_b = b->seconds * 1000 <= wish->time_ms;
+        if (fast_a != fast_b || !fast_a) {
+            return fast_a != fast_b ? fast_a : a->seconds < b->seconds;
+        }
+    }
+    if (wish->error_db > 0) {
+        bool good_a = accurate(a, wish), good_b = accurate(b, wish);
+        if (good_a != good_b) {
+            return good_a;
+        }
+        if (good_a) {
+            return a->seconds < b->seconds;
+        }
+    }
+    return a->psnr != b->psnr ? a->psnr > b->psnr : a->seconds < b->seconds;
+}
+
+/* The best that fits; of those alone that the fine look has seen, if so asked. -1: none. */
+static int choose(const plan *p, const probing *q, bool fine_only) {
+    int best = -1;
+    for (int i = 0; i < p->n; i++) {
+        if (p->settings[i].fits && !q->refused[i] && (!fine_only || q->fine[i]) &&
+            (best < 0 || better(&p->settings[i], &p->settings[best], q->wish))) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* --- the fine look --- */
+
+typedef struct pair {
+    double unit, other;
+} pair;
+
+static double least(double a, double b) {
+    return a < b ? a : b;
+}
+
+/* One sample, by turns with the unit and the other; what each takes a pixel of it. */
+static pair draw_pair(probing *q, const built *b, const plan_setting *s) {
+    pair t = {INFINITY, INFINITY};
+    for (unsigned i = 0; i < FINE_TURNS; i++) {
+        t.unit = least(t.unit, draw(q, &q->unit, 0, 0, INFINITY, q->exact));
+        t.other = least(t.other, draw(q, b, s->approx_kinds, s->approx_depth, INFINITY, q->drawn));
+    }
+    return t;
+}
+
+/* Builds the setting again, and the unit; the least of all times counts. */
+static bool build_pair(probing *q, built *b, const plan_setting *s) {
+    built again = q->unit;
+    b->size = s->size;
+    if (!build(b, q, s->method, s->grid, s->approx_kinds != 0)) {
+        return false;
+    }
+    uint32_t grid[3];
+    (void)step_down(q->m, 0, &aset_mset, grid);
+    if (!build(&again, q, &aset_mset, grid, false)) {
+        free(b->block);
+        return false;
+    }
+    q->unit.space_s = least(q->unit.space_s, again.space_s);
+    free(again.block);
+    again.size = s->size;
+    if (!build(&again, q, s->method, s->grid, s->approx_kinds != 0)) {
+        free(b->block);
+        return false;
+    }
+    b->space_s = least(b->space_s, again.space_s);
+    b->summary_s = least(b->summary_s, again.summary_s);
+    free(again.block);
+    return true;
+}
+
+/* Puts what the fine look saw into the setting; the first look of all also says what the unit takes. */
+static void settle(plan *p, probing *q, int chosen, const built *b, const pair *rate, bool first) {
+    plan_setting *s = &p->settings[chosen];
+    double unit_s = q->unit.space_s + rate->unit * pixels(q);
+    double other_s = build_seconds(b, s->approx_kinds) + rate->other * pixels(q);
+    if (first) {
+        for (int i = 0; i < p->n; i++) {
+            p->settings[i].seconds *= unit_s / p->exact_seconds;
+        }
+        p->exact_seconds = unit_s;
+    }
+    s->seconds = p->exact_seconds * other_s / unit_s;
+    q->fine[chosen] = true;
+}
+
+/* Round after round, as long as another one will end before the wall clock's end; one at least. */
+static bool refine(plan *p, probing *q, int chosen, double end, bool first) {
+    plan_setting *s = &p->settings[chosen];
+    pair sum = {0, 0}, rate;
+    error_sums e = {0, 0, 0};
+    double drawn = 0, limit = least(PIXELS_MAX, 2 * pixels(q)), now = 0, before;
+    built b;
+    if (!build_pair(q, &b, s)) {
+        return false;
+    }
+    uint32_t seed = 3, n = runs_within(FINE_SECONDS, fmax(q->unit_rate, s->seconds / pixels(q)), 16);
+    do {
+        before = elapsed(q);
+        sample_make(q, n, seed++);
+        pair t = draw_pair(q, &b, s);
+        sum.unit += t.unit;
+        sum.other += t.other;
+        drawn += sample_pixels(q);
+        add_errors(&e, q);
+        now = elapsed(q);
+    } while (2 * now - before < end && drawn < limit);
+    rate.unit = sum.unit / drawn;
+    rate.other = sum.other / drawn;
+    settle(p, q, chosen, &b, &rate, first);
+    if (s->approx_kinds != 0) {
+        s->psnr = psnr_of(&e);
+        q->refused[chosen] = !(doubt_of(&e) <= DOUBT_MAX) && sample_pixels(q) < pixels(q);
+    }
+    free(b.block);
+    return true;
+}
+
+/* Looks at the best until the best has been looked at, or the time is up and one keeps to the error asked for. */
+static bool refine_best(plan *p, probing *q) {
+    bool first = true;
+    int best = choose(p, q, false);
+    while (best >= 0 && !q->fine[best]) {
+        double now = elapsed(q);
+        if (!refine(p, q, best, now + (FINE_END - now) / 2, first)) {
+            return false;
+        }
+        first = false;
+        bool late = elapsed(q) > FINE_END;
+        best = choose(p, q, true);
+        if (late && best >= 0 && (q->wish->error_db <= 0 || accurate(&p->settings[best], q->wish))) {
+            break;
+        }
+        for (int i = 0; late && i < p->n; i++) { /* no time for surprises: an exact setting is next */
+            q->refused[i] = q->refused[i] || (!q->fine[i] && p->settings[i].approx_kinds != 0);
+        }
+        best = choose(p, q, false);
+    }
+    p->chosen = choose(p, q, true);
+    return true;
 }
 
 bool plan_make(plan *p, measured *m, const char *path, const plan_wish *wish) {
-    probing *q = malloc(sizeof *q);
+    probing *q = calloc(1, sizeof *q);
     aset_waiting *stack = malloc(ASET_BYTES_SCRATCH(wish->depth));
     bool done = q != NULL && stack != NULL;
     memset(p, 0, sizeof *p);
     p->chosen = -1;
+    p->least_bytes = m->scene_bytes + ASET_BYTES_SCRATCH(wish->depth); /* brute force has nothing more */
     if (!done) {
         tool_error(path, 0, "plan: the machine has no memory for a probe");
     }
-    done = done && measure_least(p, m, path, wish);
     if (done && p->least_bytes <= wish->memory) { /* else nothing fits, and there is nothing to probe */
         q->m = m;
         q->wish = wish;
-        q->view = m->scene.view;
-        q->view.width_px = wish->width >= wish->height ? PROBE : (PROBE * wish->width + wish->height - 1) / wish->height;
-        q->view.height_px = wish->height >= wish->width ? PROBE : (PROBE * wish->height + wish->width - 1) / wish->width;
+        q->path = path;
+        q->start = tool_seconds();
         q->scratch.stack = stack;
         q->scratch.capacity = wish->depth;
-        done = probe_all(p, q, m, path);
+        aim(q);
+        done = probe_unit(p, q) && probe_all(p, q) && refine_best(p, q);
+        free(q->unit.block);
     }
     free(stack);
     free(q);
-    p->exact_seconds = p->n > 0 ? p->settings[0].seconds : 0;
-    for (int i = 0; done && i < p->n; i++) {
-        if (p->settings[i].fits && (p->chosen < 0 || better(&p->settings[i], &p->settings[p->chosen], wish))) {
-            p->chosen = i;
-        }
-    }
     return done;
 }

@@ -194,8 +194,8 @@ static bool print_table(const trade *t, FILE *f, const trade_group *group) {
     (void)fputs(
         "<div class=\"scroll\"><table>\n<thead><tr><th></th><th>method</th><th "
         "class=\"n\">divisions</th><th>approximate</th>"
-        "<th>curtail</th><th class=\"n\">time</th><th class=\"n\">build, s</th><th class=\"n\">min-max</th>"
-        "<th class=\"n\">render, s</th><th class=\"n\">min-max</th><th class=\"n\">bytes</th><th class=\"n\">PSNR, dB</th>"
+        "<th>curtail</th><th class=\"n\">time, exact<br>mset = 1</th><th class=\"n\">build, s</th><th class=\"n\">min-max, s</th>"
+        "<th class=\"n\">render, s</th><th class=\"n\">min-max, s</th><th class=\"n\">bytes</th><th class=\"n\">PSNR, dB</th>"
         "<th class=\"n\">SSIM</th><th class=\"n\">largest<br>difference</th><th class=\"n\">pixels<br>differing, %</th>"
         "<th class=\"n\">tests<br>a ray</th><th class=\"n\">cells<br>a ray</th></tr></thead>\n<tbody>\n",
         f);

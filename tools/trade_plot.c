@@ -18,11 +18,12 @@
 #include <unistd.h>
 
 #define WIDTH_PX 1000
-#define PANEL_HEIGHT_PX 280
+#define PANEL_HEIGHT_PX 300
 /* Above the panels the title, below them the legend. */
 #define HEAD_PX 40
 #define FOOT_PX 150
 #define COLUMNS_MAX 3u
+#define NAME_MAX_CHARS 60u
 
 /* Of trade_approxes: gnuplot's number of the filled shape (the open one is one below), and a colour (Okabe and Ito 2008). */
 static const struct {
@@ -86,16 +87,24 @@ static void print_quoted(FILE *f, const char *text) {
     }
 }
 
-/* Tics at powers of two; of a higher power where they would be more than six, at half steps where under three. */
+/* The scene's name; of a long one the end, so that the title does not leave the picture. */
+static void print_name(FILE *f, const char *name) {
+    size_t n = strlen(name);
+    (void)fputs(n > NAME_MAX_CHARS ? "..." : "", f);
+    print_quoted(f, n > NAME_MAX_CHARS ? name + n - NAME_MAX_CHARS : name);
+}
+
+/* Tics at powers of two; of a higher power where their numbers would meet, at half steps where under three. */
 static void print_tics(FILE *f, const scale *a) {
-    double octaves = log2(a->high / a->low), step = octaves > 5 ? ceil(octaves / 5) : 1;
+    double octaves = log2(a->high / a->low), most = a->against == TRADE_TIME ? 4 : 5; /* a fraction's digits are more */
+    double step = octaves > most ? ceil(octaves / most) : 1;
     bool first = true, half = octaves < 2.2;
     (void)fputs("set xtics (", f);
     for (double e = floor(log2(a->low) / step) * step; e < log2(a->high); e += step) {
         for (int k = 0; k <= half; k++) {
             double x = exp2(e) * (k == 0 ? 1 : 1.5);
             if (x >= a->low && x <= a->high) {
-                (void)fprintf(f, "%s%.9g", first ? "" : ",", x);
+                (void)fprintf(f, x < 1 ? "%s'%.3g' %.9g" : "%s'%.9g' %.9g", first ? "" : ",", x, x);
                 first = false;
             }
         }
@@ -111,7 +120,7 @@ static void print_tics(FILE *f, const scale *a) {
 static void print_head(FILE *f, const scale *a, int height) {
     (void)fprintf(f, "set terminal svg size %d,%d font 'sans-serif,13' background '#ffffff' noenhanced\n", WIDTH_PX, height);
     (void)fprintf(f, "set multiplot\nset label 1 '");
-    print_quoted(f, a->group->scene->name);
+    print_name(f, a->group->scene->name);
     (void)fprintf(f, ", %" PRIu32 "x%" PRIu32 ": error against %s' at screen 0.5,%.4f center font ',16'\n", a->group->width,
                   a->group->height, a->against == TRADE_TIME ? "time" : "memory", 1 - 0.5 * HEAD_PX / height);
     (void)fprintf(f, "set logscale x 2\nset xrange [%.9g:%.9g]\nset yrange [%g:%g]\nset border 3\nset grid lc '#cccccc'\n",
@@ -145,20 +154,16 @@ static void print_points(FILE *f, const scale *a, const aset_method *method) {
 
 static void print_panel(FILE *f, const scale *a, uint32_t k, int height) {
     uint32_t column = k % a->columns, row = k / a->columns;
-    bool lowest = k + a->columns >= a->n_methods;
     double cell_width = 1.0 / a->columns, cell_height = (double)PANEL_HEIGHT_PX / height;
     double left = column * cell_width, up = 1 - (double)HEAD_PX / height - row * cell_height;
     print_points(f, a, a->methods[k]);
     (void)fprintf(
         f,
         "set lmargin at screen %.4f\nset rmargin at screen %.4f\nset tmargin at screen %.4f\nset bmargin at screen %.4f\n",
-        left + 75.0 / WIDTH_PX, left + cell_width - 15.0 / WIDTH_PX, up - 25.0 / height, up - cell_height + 55.0 / height);
+        left + 75.0 / WIDTH_PX, left + cell_width - 25.0 / WIDTH_PX, up - 25.0 / height, up - cell_height + 70.0 / height);
     (void)fprintf(f, "set title '%s' offset 0,-0.7\n", aset_method_name(a->methods[k]));
     (void)fprintf(f, "set xlabel '%s'\nset ylabel '%s' offset 1.5,0\n",
-                  !lowest                    ? ""
-                  : a->against == TRADE_TIME ? "time, exact mset = 1"
-                                             : "peak of the arena, KiB",
-                  column == 0 ? "PSNR, dB" : "");
+                  a->against == TRADE_TIME ? "build and render time, exact mset = 1" : "peak of the arena, KiB", "PSNR, dB");
     (void)fputs("plot ", f);
     for (int i = 0; i < TRADE_APPROXES; i++) {
         (void)fprintf(f,
