@@ -405,7 +405,9 @@ static void test_nff__one_sided_opaque(void **state) {
     aset_load_report report;
     recorder_init(&to, " %.6g", false);
     const aset_sink sink = recorder_sink(&to);
-    const aset_load_options options = {true};
+    aset_load_options options;
+    memset(&options, 0, sizeof options);
+    options.one_sided_opaque = true;
     assert_int_equal(aset_load_nff(&sink, give, &from, &options, &report), ASET_OK);
     assert_string_equal(to.text, log);
     free(to.text);

@@ -61,7 +61,9 @@ bool tool_source_open(tool_source *source, const char *path) {
 
 bool tool_source_read(tool_source *source, const aset_sink *sink) {
     aset_load_report report;
-    aset_load_options options = {source->one_sided_opaque};
+    aset_load_options options;
+    memset(&options, 0, sizeof options);
+    options.one_sided_opaque = source->one_sided_opaque;
     rewind(source->stream);
     aset_status status = aset_load_nff(sink, read_stream, source->stream, &options, &report);
     if (status == ASET_OK) {

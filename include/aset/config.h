@@ -44,6 +44,10 @@
 #ifndef ASET_WITH_APPROXIMATION
 #define ASET_WITH_APPROXIMATION 1
 #endif
+/* Drafts: models baked into facets, and the rays that meet these; needs the approximation. */
+#ifndef ASET_WITH_DRAFTS
+#define ASET_WITH_DRAFTS ASET_WITH_APPROXIMATION
+#endif
 
 #if ASET_REAL_BITS != 32 && ASET_REAL_BITS != 64
 #error "ASET_REAL_BITS is 32 (float) or 64 (double)"
@@ -51,19 +55,23 @@
 #if ASET_WITH_PATCHES && !ASET_WITH_POLYGONS
 #error "ASET_WITH_PATCHES needs ASET_WITH_POLYGONS: a patch is a polygon with normals"
 #endif
+#if ASET_WITH_DRAFTS && !ASET_WITH_APPROXIMATION
+#error "ASET_WITH_DRAFTS needs ASET_WITH_APPROXIMATION: who may take a draft is said by the same fields"
+#endif
 #if !ASET_WITH_POLYGONS && !ASET_WITH_SPHERES && !ASET_WITH_CONES
 #error "switch on at least one kind of object: ASET_WITH_POLYGONS, ASET_WITH_SPHERES or ASET_WITH_CONES"
 #endif
 
 /*
  * Names that carry the switches. A program compiled with other values asks the linker for a function that the library does
- * not have, for example aset_scene_init__32_0111111 instead of aset_scene_init__32_1111111.
+ * not have, for example aset_scene_init__32_01111111 instead of aset_scene_init__32_11111111.
  */
-#define ASET_LAYOUT_PASTE(name, bits, a, b, c, d, e, f, g) name##__##bits##_##a##b##c##d##e##f##g
-#define ASET_LAYOUT_EXPAND(name, bits, a, b, c, d, e, f, g) ASET_LAYOUT_PASTE(name, bits, a, b, c, d, e, f, g)
+#define ASET_LAYOUT_PASTE(name, bits, a, b, c, d, e, f, g, h) name##__##bits##_##a##b##c##d##e##f##g##h
+#define ASET_LAYOUT_EXPAND(name, bits, a, b, c, d, e, f, g, h) ASET_LAYOUT_PASTE(name, bits, a, b, c, d, e, f, g, h)
 #define ASET_LAYOUT(name)                                                                                              \
     ASET_LAYOUT_EXPAND(name, ASET_REAL_BITS, ASET_WITH_POLYGONS, ASET_WITH_PATCHES, ASET_WITH_SPHERES,                 \
-                       ASET_WITH_CONES, ASET_WITH_REFLECTION, ASET_WITH_REFRACTION, ASET_WITH_APPROXIMATION)
+                       ASET_WITH_CONES, ASET_WITH_REFLECTION, ASET_WITH_REFRACTION, ASET_WITH_APPROXIMATION, \
+                       ASET_WITH_DRAFTS)
 
 #define aset_arena_init ASET_LAYOUT(aset_arena_init)
 #define aset_scene_init ASET_LAYOUT(aset_scene_init)
@@ -74,6 +82,11 @@
 #define aset_space_measure ASET_LAYOUT(aset_space_measure)
 #define aset_summary_measure ASET_LAYOUT(aset_summary_measure)
 #define aset_summary_build ASET_LAYOUT(aset_summary_build)
+#define aset_baker_init ASET_LAYOUT(aset_baker_init)
+#define aset_baker_sink ASET_LAYOUT(aset_baker_sink)
+#define aset_baker_finish ASET_LAYOUT(aset_baker_finish)
+#define aset_draft_open ASET_LAYOUT(aset_draft_open)
+#define aset_draft_texture ASET_LAYOUT(aset_draft_texture)
 #define aset_closest_hit ASET_LAYOUT(aset_closest_hit)
 #define aset_any_hit ASET_LAYOUT(aset_any_hit)
 #define aset_scratch_init ASET_LAYOUT(aset_scratch_init)
@@ -82,6 +95,9 @@
 #define aset_report_text ASET_LAYOUT(aset_report_text)
 #define aset_report_json ASET_LAYOUT(aset_report_json)
 #define aset_load_nff ASET_LAYOUT(aset_load_nff)
+#define aset_load_stl ASET_LAYOUT(aset_load_stl)
+#define aset_load_ply ASET_LAYOUT(aset_load_ply)
+#define aset_load_obj ASET_LAYOUT(aset_load_obj)
 #define aset_procedural_find ASET_LAYOUT(aset_procedural_find)
 
 #endif

@@ -1,21 +1,15 @@
 /*
- * reader.c - bytes to tokens, tokens to numbers.
+ * reader.c - bytes to tokens.
  *
- *     input   ... taken ... | buffer[at .. end) | not yet asked for ...
- *                           ^ offset, line: always those of buffer[at]
+ *     input   ... taken ... | bytes[at .. end) | not yet asked for ...
+ *                           ^ offset, line: always those of bytes[at]
  *
- * Only take() moves forward in text, so offset and line cannot disagree with the bytes. A line ends with LF, CRLF or CR: CR
- * counts it and an LF right behind is the same end. (Files with CR alone are rare, but were it not an end, a comment in one
- * would swallow all that follows.)
- *
- * Numbers: digits times 10^e is brought into one long integer, exactly: multiplied by 10^e, or, for e < 0, shifted up until
- * enough bits remain and divided by 10^-e with the remainder remembered. The nearest binary number is then read off its top
- * bits. This is the plain exact method that faster ones fall back on (Clinger, "How to Read Floating Point Numbers
- * Accurately", 1990). Usual numbers take one or two limbs, so it is not slow where it matters.
+ * Only take() and the two quick_... functions move forward in text, so offset and line cannot disagree with the bytes. A
+ * line ends with LF, CRLF or CR: CR counts it and an LF right behind is the same end. (Files with CR alone are rare, but
+ * were it not an end, a comment in one would swallow all that follows.)
  */
 #include "reader.h"
 
-#include <float.h>
 #include <string.h>
 
 /* ---- places and errors ---- */
@@ -64,10 +58,10 @@ static aset_status fail_at_byte(aset_reader *reader, const char *token, aset_sta
 
 /* ---- bytes ---- */
 
-/* Asks once for bytes behind buffer[end); there must be room. */
+/* Asks once for bytes behind bytes[end); there must be room. */
 static aset_status fill(aset_reader *reader) {
-    const size_t room = sizeof reader->buffer - reader->end;
-    const ptrdiff_t got = reader->read(reader->context, reader->buffer + reader->end, room);
+    const size_t room = reader->capacity - reader->end;
+    const ptrdiff_t got = reader->read(reader->context, reader->bytes + reader->end, room);
     if (got < 0) {
         return fail_at_byte(reader, "", ASET_ERR_READ, "the input could not be read", NULL);
     }
@@ -88,7 +82,7 @@ static aset_status look(aset_reader *reader, int *byte) {
             return status;
         }
     }
-    *byte = reader->at < reader->end ? reader->buffer[reader->at] : -1;
+    *byte = reader->at < reader->end ? reader->bytes[reader->at] : -1;
     return ASET_OK;
 }
 
@@ -122,16 +116,60 @@ static void take(aset_reader *reader, int byte) {
     reader->after_cr = byte == '\r';
 }
 
-/* Stops before the line's end, or at the input's. */
-static aset_status skip_to_line_end(aset_reader *reader) {
+/* Takes what is in the buffer of the line's rest, up to its end or to a byte that needs a closer look. */
+static void quick_rest(aset_reader *reader) {
+    const unsigned char *from = reader->bytes + reader->at, *end = reader->bytes + reader->end, *p = from;
+    while (p < end && ((*p >= ' ' && *p != 127) || *p == '\t')) {
+        p++;
+    }
+    if (p > from) {
+        reader->at += (size_t)(p - from);
+        reader->offset += (uint64_t)(p - from);
+        reader->after_cr = false;
+    }
+}
+
+/* Stops before the line's end, or at the input's. *last is the last byte taken, -1 if there is none. */
+static aset_status skip_to_line_end(aset_reader *reader, int *last) {
+    *last = -1;
     for (;;) {
         int byte;
+        const size_t before = reader->at;
+        quick_rest(reader);
+        *last = reader->at > before ? reader->bytes[reader->at - 1] : *last;
         const aset_status status = look_text(reader, &byte);
         if (status != ASET_OK || byte < 0 || is_line_end(byte)) {
             return status;
         }
         take(reader, byte);
+        *last = byte;
     }
+}
+
+/* Takes the line's end, which is next: LF, CR or CRLF. */
+static aset_status take_line_end(aset_reader *reader) {
+    int byte = reader->bytes[reader->at];
+    aset_status status = ASET_OK;
+    take(reader, byte);
+    /* bytes behind the line may be binary, so the LF of a CRLF must go now */
+    if (byte == '\r' && (status = look(reader, &byte)) == ASET_OK && byte == '\n') {
+        take(reader, byte);
+    }
+    return status;
+}
+
+/* The next byte is a joiner: is it one before a line's end? Then both are taken. */
+static aset_status take_joint(aset_reader *reader, bool *joint) {
+    const unsigned char *bytes;
+    size_t n;
+    aset_status status = aset_reader_peek(reader, 2, &bytes, &n);
+    *joint = status == ASET_OK && n == 2 && is_line_end(bytes[1]);
+    if (*joint) {
+        take(reader, reader->joiner);
+        reader->joined++;
+        status = take_line_end(reader);
+    }
+    return status;
 }
 
 /* Stops before the next token's first byte, which is *byte, or at the end with -1. */
@@ -139,9 +177,16 @@ static aset_status skip_blanks(aset_reader *reader, int *byte) {
     for (;;) {
         aset_status status = look_text(reader, byte);
         if (status == ASET_OK && *byte >= 0 && *byte == reader->comment) {
-            status = skip_to_line_end(reader);
+            int last;
+            status = skip_to_line_end(reader, &last);
         } else if (status == ASET_OK && is_blank(*byte)) {
             take(reader, *byte);
+        } else if (status == ASET_OK && *byte >= 0 && *byte == reader->joiner) {
+            bool joint;
+            status = take_joint(reader, &joint);
+            if (status != ASET_OK || !joint) {
+                return status;
+            }
         } else {
             return status;
         }
@@ -155,6 +200,10 @@ void aset_reader_init(aset_reader *reader, aset_read read, void *context, aset_l
     memset(report, 0, sizeof *report);
     report->what = report->expected = NULL;
     reader->comment = '#';
+    reader->joiner = -1;
+    reader->joined = 0;
+    reader->bytes = reader->buffer;
+    reader->capacity = sizeof reader->buffer;
     reader->cut = "the file ends too early";
     reader->token[0] = '\0';
     reader->length = 0;
@@ -170,28 +219,60 @@ void aset_reader_init(aset_reader *reader, aset_read read, void *context, aset_l
     reader->report = report;
 }
 
-aset_status aset_reader_skip_line(aset_reader *reader) {
-    int byte;
-    aset_status status = skip_to_line_end(reader);
-    if (status == ASET_OK) {
-        status = look(reader, &byte);
-    }
-    if (status == ASET_OK && byte >= 0) {
-        take(reader, byte);
-        /* bytes behind the line may be binary, so the LF of a CRLF must go now */
-        if (byte == '\r' && (status = look(reader, &byte)) == ASET_OK && byte == '\n') {
-            take(reader, byte);
-        }
-    }
-    return status;
+void aset_reader_lend(aset_reader *reader, unsigned char *block, size_t capacity) {
+    reader->bytes = block;
+    reader->capacity = capacity;
 }
 
-aset_status aset_reader_peek(aset_reader *reader, size_t wanted, const unsigned char **bytes, size_t *n) {
-    if (wanted > sizeof reader->buffer) {
-        wanted = sizeof reader->buffer;
+aset_status aset_reader_skip_line(aset_reader *reader) {
+    for (;;) {
+        int byte, last;
+        aset_status status = skip_to_line_end(reader, &last);
+        if (status == ASET_OK) {
+            status = look(reader, &byte);
+        }
+        if (status != ASET_OK || byte < 0) {
+            return status;
+        }
+        status = take_line_end(reader);
+        if (status != ASET_OK || last < 0 || last != reader->joiner) {
+            return status;
+        }
+    }
+}
+
+aset_status aset_reader_rest(aset_reader *reader, char *text, size_t size, size_t *length) {
+    size_t n = 0; /* bytes so far, blanks at the end too, without which they are *length */
+    *length = 0;
+    for (;;) {
+        int byte, last;
+        aset_status status = look_text(reader, &byte);
+        const bool comment = byte == reader->comment && (n == 0 || n > *length);
+        if (status == ASET_OK && byte >= 0 && comment) {
+            status = skip_to_line_end(reader, &last);
+        }
+        if (status != ASET_OK || byte < 0 || is_line_end(byte) || comment) {
+            text[*length] = '\0';
+            return status;
+        }
+        take(reader, byte);
+        if (is_blank(byte) && n == 0) {
+            continue;
+        }
+        if (n + 1 >= size) {
+            return aset_reader_fail(reader, ASET_ERR_LIMIT, "a name too long to be kept", NULL);
+        }
+        text[n++] = (char)byte;
+        *length = is_blank(byte) ? *length : n;
+    }
+}
+
+aset_status aset_reader_window(aset_reader *reader, size_t wanted, const unsigned char **bytes, size_t *n) {
+    if (wanted > reader->capacity) {
+        wanted = reader->capacity;
     }
     if (reader->end - reader->at < wanted) {
-        memmove(reader->buffer, reader->buffer + reader->at, reader->end - reader->at);
+        memmove(reader->bytes, reader->bytes + reader->at, reader->end - reader->at);
         reader->end -= reader->at;
         reader->at = 0;
     }
@@ -201,9 +282,24 @@ aset_status aset_reader_peek(aset_reader *reader, size_t wanted, const unsigned 
             return status;
         }
     }
-    *bytes = reader->buffer + reader->at;
-    *n = reader->end - reader->at < wanted ? reader->end - reader->at : wanted;
+    *bytes = reader->bytes + reader->at;
+    *n = reader->end - reader->at;
     return ASET_OK;
+}
+
+aset_status aset_reader_peek(aset_reader *reader, size_t wanted, const unsigned char **bytes, size_t *n) {
+    const aset_status status = aset_reader_window(reader, wanted, bytes, n);
+    if (status == ASET_OK) {
+        const size_t most = wanted < reader->capacity ? wanted : reader->capacity;
+        *n = *n < most ? *n : most;
+    }
+    return status;
+}
+
+void aset_reader_advance(aset_reader *reader, size_t n) {
+    reader->at += n;
+    reader->offset += n;
+    reader->after_cr = false;
 }
 
 aset_status aset_reader_raw(aset_reader *reader, void *bytes, size_t size, size_t *n) {
@@ -217,10 +313,8 @@ aset_status aset_reader_raw(aset_reader *reader, void *bytes, size_t size, size_
         }
         const size_t here = reader->end - reader->at;
         const size_t part = here < size - *n ? here : size - *n;
-        memcpy(to + *n, reader->buffer + reader->at, part);
-        reader->at += part;
-        reader->offset += part;
-        reader->after_cr = false;
+        memcpy(to + *n, reader->bytes + reader->at, part);
+        aset_reader_advance(reader, part);
         *n += part;
     }
     return ASET_OK;
@@ -228,36 +322,92 @@ aset_status aset_reader_raw(aset_reader *reader, void *bytes, size_t size, size_
 
 /* ---- tokens ---- */
 
-aset_status aset_reader_next(aset_reader *reader) {
-    if (reader->kept) {
-        reader->kept = false;
-        return ASET_OK;
-    }
-    const uint32_t line_before = reader->token_line;
-    int byte;
-    aset_status status = skip_blanks(reader, &byte);
-    if (status != ASET_OK) {
-        return status;
-    }
+/* The current token begins at the next byte. */
+static void begin_token(aset_reader *reader, bool at_end) {
+    const uint32_t line_before = reader->token_line + reader->joined;
     reader->token_offset = reader->offset;
     reader->token_line = reader->line;
-    reader->starts_line = byte < 0 || !reader->has_token || reader->line != line_before;
+    reader->starts_line = at_end || !reader->has_token || reader->line != line_before;
     reader->has_token = true;
+    reader->joined = 0;
     reader->length = 0;
+}
+
+/* Takes the next token if all of it and the byte behind it are in the buffer, and nothing before it needs a closer look. */
+static bool quick_token(aset_reader *reader) {
+    const unsigned char *p = reader->bytes + reader->at, *end = reader->bytes + reader->end;
+    const unsigned char *from = p;
+    uint32_t lines = 0;
+    if (reader->after_cr) {
+        return false;
+    }
+    for (; p < end && (*p == ' ' || *p == '\t' || *p == '\n'); p++) {
+        lines += *p == '\n' ? 1u : 0u;
+    }
+    const unsigned char *first = p;
+    const int comment = reader->comment, joiner = reader->joiner;
+    while (p<end && * p> ' ' && *p != 127 && *p != comment && *p != joiner) {
+        p++;
+    }
+    const size_t length = (size_t)(p - first);
+    if (p == end || length == 0 || length >= sizeof reader->token || !is_blank(*p)) {
+        return false;
+    }
+    reader->offset += (uint64_t)(first - from);
+    reader->line += lines;
+    begin_token(reader, false);
+    memcpy(reader->token, first, length);
+    reader->token[length] = '\0';
+    reader->length = (uint32_t)length;
+    reader->offset += length;
+    reader->at += (size_t)(p - from);
+    return true;
+}
+
+/* The rest of a token of which byte is the next. */
+static aset_status take_token(aset_reader *reader, int byte) {
+    bool joint = false;
     while (byte >= 0 && !is_blank(byte) && byte != reader->comment) {
+        aset_status status = ASET_OK;
+        if (byte == reader->joiner) {
+            status = take_joint(reader, &joint);
+        }
+        if (status != ASET_OK || joint) {
+            return status;
+        }
         if (reader->length + 1 == sizeof reader->token) {
-            reader->token[reader->length] = '\0';
             return aset_reader_fail(reader, ASET_ERR_SYNTAX, "a word too long for any number or name", NULL);
         }
         reader->token[reader->length++] = (char)byte;
+        reader->token[reader->length] = '\0';
         take(reader, byte);
         status = look_text(reader, &byte);
         if (status != ASET_OK) {
             return status;
         }
     }
-    reader->token[reader->length] = '\0';
     return ASET_OK;
+}
+
+aset_status aset_reader_next(aset_reader *reader) {
+    if (reader->kept) {
+        reader->kept = false;
+        return ASET_OK;
+    }
+    if (quick_token(reader)) {
+        return ASET_OK;
+    }
+    int byte;
+    const aset_status status = skip_blanks(reader, &byte);
+    if (status != ASET_OK) {
+        return status;
+    }
+    if (byte >= 0 && quick_token(reader)) {
+        return ASET_OK;
+    }
+    begin_token(reader, byte < 0);
+    reader->token[0] = '\0';
+    return take_token(reader, byte);
 }
 
 aset_status aset_reader_keep(aset_reader *reader) {
@@ -283,280 +433,7 @@ bool aset_reader_is_numeric(const aset_reader *reader) {
     return is_digit(c) || c == '+' || c == '-' || c == '.';
 }
 
-/* ---- numbers ---- */
-
-/*
- * Limits of aset_real as powers of two and ten: it holds MANTISSA_BITS, and values from 2^(SMALLEST - 1) up to just below
- * 2^LARGEST in full. A number of 10^(LARGEST_DECIMAL + 1) or more is too large; one below 10^ZERO_DECIMAL is less than half
- * the least denormal (1.4e-45, 4.9e-324), so 0.
- */
-#if ASET_REAL_BITS == 32
-#define MANTISSA_BITS FLT_MANT_DIG
-#define SMALLEST FLT_MIN_EXP
-#define LARGEST FLT_MAX_EXP
-#define LARGEST_DECIMAL FLT_MAX_10_EXP
-#define ZERO_DECIMAL (-46)
-#else
-#define MANTISSA_BITS DBL_MANT_DIG
-#define SMALLEST DBL_MIN_EXP
-#define LARGEST DBL_MAX_EXP
-#define LARGEST_DECIMAL DBL_MAX_10_EXP
-#define ZERO_DECIMAL (-324)
-#endif
-
-/*
- * Limbs that suffice. For e < 0 the integer is shifted to MANTISSA_BITS + 4 bits more than 10^-e has, and -e is at most the
- * digits of a token - ZERO_DECIMAL; for e >= 0 it stays below 10^(LARGEST_DECIMAL + 1), which is less. 10 / 3 > log2(10).
- * 3 limbs on top: the ends not filled, and the one that a shift may leave empty.
- */
-#define LIMBS (((ASET_READER_TOKEN + (uint32_t)-ZERO_DECIMAL) * 10u / 3u + MANTISSA_BITS + 4u) / 32u + 3u)
-
-/* limb[0] is the lowest; limb[n - 1] is not 0, and n is 0 for zero. */
-typedef struct natural {
-    uint32_t limb[LIMBS];
-    uint32_t n;
-} natural;
-
-typedef struct decimal {
-    natural digits;
-    int32_t exponent; /* the value is digits * 10^exponent */
-    int32_t n_digits; /* without leading zeros */
-    bool negative;
-} decimal;
-
-static const uint32_t ten_to[10] = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000, 1000000000};
-
-static void multiply_add(natural *a, uint32_t factor, uint32_t add) {
-    uint64_t carry = add;
-    for (uint32_t i = 0; i < a->n; i++) {
-        carry += (uint64_t)a->limb[i] * factor;
-        a->limb[i] = (uint32_t)carry;
-        carry >>= 32;
-    }
-    if (carry != 0) {
-        a->limb[a->n++] = (uint32_t)carry;
-    }
-}
-
-static void trim(natural *a) {
-    while (a->n > 0 && a->limb[a->n - 1] == 0) {
-        a->n--;
-    }
-}
-
-/* Gives the remainder. Floors of successive quotients are the floor of the whole quotient, so steps lose nothing. */
-static uint32_t divide(natural *a, uint32_t divisor) {
-    uint64_t rest = 0;
-    for (uint32_t i = a->n; i-- > 0;) {
-        rest = rest << 32 | a->limb[i];
-        a->limb[i] = (uint32_t)(rest / divisor);
-        rest %= divisor;
-    }
-    trim(a);
-    return (uint32_t)rest;
-}
-
-static uint32_t limb_at(const natural *a, uint32_t i) {
-    return i < a->n ? a->limb[i] : 0;
-}
-
-/* From the top down, in place: limb i only needs those at and below i - words. */
-static void shift_left(natural *a, uint32_t bits) {
-    const uint32_t words = bits / 32, rest = bits % 32;
-    for (uint32_t i = a->n + words + 1; i-- > 0;) {
-        const uint64_t high = i >= words ? limb_at(a, i - words) : 0;
-        const uint64_t low = i >= words + 1 ? limb_at(a, i - words - 1) : 0;
-        a->limb[i] = (uint32_t)((high << 32 | low) << rest >> 32);
-    }
-    a->n += words + 1;
-    trim(a);
-}
-
-static int32_t bit_length(const natural *a) {
-    int32_t bits = (int32_t)a->n * 32;
-    for (uint32_t top = limb_at(a, a->n - 1); a->n > 0 && top < 0x80000000u; top <<= 1) {
-        bits--;
-    }
-    return bits;
-}
-
-/* Bits from number first up, as many as 64. */
-static uint64_t bits_from(const natural *a, uint32_t first) {
-    const uint32_t word = first / 32, rest = first % 32;
-    const uint64_t low = (uint64_t)limb_at(a, word + 1) << 32 | limb_at(a, word);
-    return rest == 0 ? low : low >> rest | (uint64_t)limb_at(a, word + 2) << (64 - rest);
-}
-
-/* Any bit set below number end. */
-static bool any_below(const natural *a, uint32_t end) {
-    for (uint32_t i = 0; i < end / 32; i++) {
-        if (limb_at(a, i) != 0) {
-            return true;
-        }
-    }
-    return (limb_at(a, end / 32) & ((1u << end % 32) - 1u)) != 0;
-}
-
-/* mantissa * 2^exponent, which must be an aset_real, so that no step rounds. */
-static aset_real exact_real(uint64_t mantissa, int32_t exponent) {
-    const aset_real step = (aset_real)1073741824, two = 2;
-    aset_real value = (aset_real)mantissa;
-    for (; exponent >= 30; exponent -= 30) {
-        value *= step;
-    }
-    for (; exponent > 0; exponent--) {
-        value *= two;
-    }
-    for (; exponent <= -30; exponent += 30) {
-        value /= step;
-    }
-    for (; exponent < 0; exponent++) {
-        value /= two;
-    }
-    return value;
-}
-
-/* The aset_real nearest to (a + f) * 2^-shift; inexact: 0 < f < 1, else f = 0. False if that is too large. */
-static bool nearest_real(const natural *a, int32_t shift, bool inexact, aset_real *value) {
-    const int32_t length = bit_length(a), exponent = length - shift; /* 2^(exponent - 1) <= it < 2^exponent */
-    const int32_t kept = exponent >= SMALLEST ? MANTISSA_BITS : MANTISSA_BITS - (SMALLEST - exponent);
-    const int32_t dropped = length - kept;
-    if (kept < 0) { /* less than half the least denormal */
-        *value = 0;
-        return true;
-    }
-    uint64_t mantissa = bits_from(a, dropped > 0 ? (uint32_t)dropped : 0);
-    if (dropped > 0) {
-        const bool half = (bits_from(a, (uint32_t)dropped - 1) & 1) != 0;
-        const bool more = inexact || any_below(a, (uint32_t)dropped - 1);
-        mantissa += half && (more || (mantissa & 1) != 0) ? 1u : 0u;
-    }
-    const bool carried = mantissa >> MANTISSA_BITS != 0;
-    if (exponent + (carried ? 1 : 0) > LARGEST) {
-        return false;
-    }
-    *value = exact_real(mantissa, (dropped > 0 ? dropped : 0) - shift);
-    return true;
-}
-
-/* The value of d, which is between the decimal limits and not 0. */
-static bool scale(decimal *d, aset_real *value) {
-    int32_t left = d->exponent < 0 ? -d->exponent : d->exponent, shift = 0;
-    bool inexact = false;
-    if (d->exponent < 0) {
-        /* 10^left < 2^(bits + 1); the factor is log2(10), a little up. The quotient gets MANTISSA_BITS + 2 bits or more. */
-        const int32_t bits = left * 33220 / 10000;
-        shift = MANTISSA_BITS + 3 + bits - bit_length(&d->digits);
-        shift = shift < 0 ? 0 : shift;
-        shift_left(&d->digits, (uint32_t)shift);
-    }
-    while (left > 0) {
-        const int32_t step = left < 9 ? left : 9;
-        if (d->exponent >= 0) {
-            multiply_add(&d->digits, ten_to[step], 0);
-        } else if (divide(&d->digits, ten_to[step]) != 0) {
-            inexact = true;
-        }
-        left -= step;
-    }
-    return nearest_real(&d->digits, shift, inexact, value);
-}
-
-/* Takes the digits from text[at] on; the place behind them. */
-static size_t take_digits(decimal *d, const char *text, size_t length, size_t at, bool fraction) {
-    for (; at < length && is_digit(text[at]); at++) {
-        multiply_add(&d->digits, 10, (uint32_t)(text[at] - '0'));
-        d->n_digits += d->digits.n > 0 ? 1 : 0;
-        d->exponent -= fraction ? 1 : 0;
-    }
-    return at;
-}
-
-/* Takes an exponent with its letter from text[at] on, if there is one; the place behind it, or 0 if it has no digits. */
-static size_t take_exponent(decimal *d, const char *text, size_t length, size_t at) {
-    const int32_t enough = 100000; /* beyond all limits, whatever the digits */
-    if (at == length || (text[at] != 'e' && text[at] != 'E')) {
-        return at;
-    }
-    at++;
-    const bool negative = at < length && text[at] == '-';
-    at += at < length && (text[at] == '-' || text[at] == '+') ? 1 : 0;
-    int32_t exponent = 0;
-    const size_t first = at;
-    for (; at < length && is_digit(text[at]); at++) {
-        exponent = exponent >= enough ? enough : exponent * 10 + (text[at] - '0');
-    }
-    d->exponent += negative ? -exponent : exponent;
-    return at == first ? 0 : at;
-}
-
-/* "nan..." or "inf...", in any case, which other programs print for numbers that failed. */
-static bool is_not_finite(const char *text, size_t length) {
-    static const char names[2][3] = {{'n', 'a', 'n'}, {'i', 'n', 'f'}};
-    for (size_t k = 0; k < 2 && length >= 3; k++) {
-        size_t i = 0;
-        while (i < 3 && (text[i] == names[k][i] || text[i] == names[k][i] - 'a' + 'A')) {
-            i++;
-        }
-        if (i == 3) {
-            return true;
-        }
-    }
-    return false;
-}
-
-const char *aset_number_real(const char *text, size_t length, aset_real *value) {
-    static const char not_a_number[] = "not a decimal number";
-    if (length >= ASET_READER_TOKEN) {
-        return not_a_number;
-    }
-    decimal d; /* the limbs are written before they are read */
-    d.digits.n = 0;
-    d.exponent = d.n_digits = 0;
-    size_t at = length > 0 && (text[0] == '-' || text[0] == '+') ? 1 : 0;
-    d.negative = at == 1 && text[0] == '-';
-    if (is_not_finite(text + at, length - at)) {
-        return "not a finite number";
-    }
-    const size_t first = at;
-    at = take_digits(&d, text, length, at, false);
-    size_t n_digits = at - first;
-    if (at < length && text[at] == '.') {
-        const size_t behind = at + 1;
-        at = take_digits(&d, text, length, behind, true);
-        n_digits += at - behind;
-    }
-    at = take_exponent(&d, text, length, at);
-    if (n_digits == 0 || at != length) {
-        return not_a_number;
-    }
-    aset_real size = 0;
-    const int32_t magnitude = d.n_digits + d.exponent; /* it is below 10^magnitude, and not below a tenth of it */
-    if (d.n_digits > 0 && (magnitude > LARGEST_DECIMAL + 1 || (magnitude > ZERO_DECIMAL && !scale(&d, &size)))) {
-        return "a number too large";
-    }
-    *value = d.negative ? -size : size;
-    return NULL;
-}
-
-const char *aset_number_whole(const char *text, size_t length, uint32_t *value) {
-    uint64_t sum = 0;
-    for (size_t i = 0; i < length; i++) {
-        if (!is_digit(text[i])) {
-            return "not a whole number";
-        }
-        sum = sum * 10 + (uint64_t)(text[i] - '0');
-        sum = sum > UINT32_MAX ? (uint64_t)UINT32_MAX + 1 : sum; /* stays above, whatever follows */
-    }
-    if (length == 0) {
-        return "not a whole number";
-    }
-    if (sum > UINT32_MAX) {
-        return "a number too large";
-    }
-    *value = (uint32_t)sum;
-    return NULL;
-}
+/* ---- numbers as tokens ---- */
 
 /* The next token, which must be there. */
 static aset_status need_token(aset_reader *reader, const char *expected) {
@@ -573,6 +450,15 @@ aset_status aset_reader_real(aset_reader *reader, aset_real *value, const char *
         return status;
     }
     const char *wrong = aset_number_real(reader->token, reader->length, value);
+    return wrong == NULL ? ASET_OK : aset_reader_fail(reader, ASET_ERR_SYNTAX, wrong, expected);
+}
+
+aset_status aset_reader_coordinate(aset_reader *reader, aset_real *value, const char *expected) {
+    const aset_status status = need_token(reader, expected);
+    if (status != ASET_OK) {
+        return status;
+    }
+    const char *wrong = aset_number_coordinate(reader->token, reader->length, value);
     return wrong == NULL ? ASET_OK : aset_reader_fail(reader, ASET_ERR_SYNTAX, wrong, expected);
 }
 
