@@ -76,7 +76,7 @@ static void tell_need(tool_source *source, const settings *s, const aset_counts 
 /* A view for a scene: the file's, with the command line's changes. */
 static bool choose_view(prepared *p, const settings *s) {
     aset_view *view = &p->view;
-    *view = p->scene.view;
+    *view = p->is_streamed ? p->draft.stage.view : p->scene.view;
     view->from = s->has_from ? s->from : view->from;
     view->at = s->has_at ? s->at : view->at;
     view->up = s->has_up ? s->up : view->up;
@@ -98,9 +98,11 @@ static bool choose_view(prepared *p, const settings *s) {
 static void choose_tracer(prepared *p, const settings *s) {
     aset_tracer *t = &p->tracer;
     memset(t, 0, sizeof *t);
-    t->scene = &p->scene;
-    t->space = &p->space;
-    t->summary = approximates(s) ? &p->summary : NULL;
+    t->scene = p->is_streamed ? &p->draft.stage : &p->scene;
+    t->space = p->is_streamed ? NULL : &p->space;
+    t->summary = approximates(s) && !p->is_drafted ? &p->summary : NULL;
+    t->draft = p->is_drafted ? &p->draft : NULL;
+    t->draft_sides = s->cells == CELLS_NORMAL;
     t->approx_kinds = s->approx_kinds;
     t->approx_depth = s->approx_depth;
     t->curtail = (aset_real)s->curtail;
@@ -108,6 +110,36 @@ static void choose_tracer(prepared *p, const settings *s) {
     t->depth = s->depth;
     t->samples = s->samples;
     t->spd_rules = s->spd_rules;
+}
+
+/* A draft of what the source holds, in the arena's free bytes. */
+static aset_status bake(prepared *p, const settings *s, tool_source *source, bool *told) {
+    aset_baker baker;
+    aset_bake_options options;
+    bool again = true;
+    memset(&options, 0, sizeof options);
+    memcpy(options.divisions, s->grid, sizeof options.divisions);
+    aset_status status = aset_baker_init(&baker, &p->arena, &options);
+    while (status == ASET_OK && again) {
+        aset_sink sink = aset_baker_sink(&baker);
+        double start = tool_seconds();
+        if (!tool_source_read(source, &sink)) {
+            *told = true;
+            return ASET_ERR_SYNTAX;
+        }
+        status = aset_baker_pass(&baker, &again);
+        p->build_s += tool_seconds() - start;
+    }
+    return status == ASET_OK ? aset_baker_finish(&p->draft, &baker) : status;
+}
+
+/* No object is kept: scratches and the draft alone. */
+static aset_status fill_streamed(prepared *p, const settings *s, tool_source *source, bool *told) {
+    aset_status status = ASET_OK;
+    for (uint32_t i = 0; i < s->threads && status == ASET_OK; i++) {
+        status = aset_scratch_init(&p->scratches[i], s->depth, &p->arena);
+    }
+    return status == ASET_OK ? bake(p, s, source, told) : status;
 }
 
 /* Scene, scratches, space and summary in the arena. */
@@ -131,11 +163,11 @@ static aset_status fill_arena(prepared *p, const settings *s, tool_source *sourc
     if (status == ASET_OK) {
         status = aset_space_build(&p->space, &p->scene, s->method, &options, &p->arena);
     }
-    if (status == ASET_OK && approximates(s)) {
+    if (status == ASET_OK && approximates(s) && !p->is_drafted) {
         status = aset_summary_build(&p->summary, &p->space, options.textures, &p->arena);
     }
     p->build_s = tool_seconds() - start;
-    return status;
+    return status == ASET_OK && p->is_drafted ? bake(p, s, source, told) : status;
 }
 
 static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
@@ -155,8 +187,14 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
         return false;
     }
     bool told = false;
-    aset_status status = fill_arena(p, s, source, &counter.counts, &told);
-    if (status == ASET_ERR_NOMEM) {
+    p->counts = counter.counts;
+    p->is_drafted = approximates(s) && s->cells != CELLS_FLAT;
+    p->is_streamed = p->is_drafted && s->approx_kinds == ASET_ALL_KINDS && s->approx_depth == 0;
+    aset_status status = p->is_streamed ? fill_streamed(p, s, source, &told)
+                                        : fill_arena(p, s, source, &counter.counts, &told);
+    if (status == ASET_ERR_NOMEM && p->is_drafted) {
+        tool_error(source->path, 0, "the draft needs %zu bytes, has %" PRIu64, (size_t)s->memory + p->arena.missing, s->memory);
+    } else if (status == ASET_ERR_NOMEM) {
         tell_need(source, s, &counter.counts);
     } else if (status != ASET_OK && !told) {
         tool_error(source->path, 0, "%s", aset_status_text(status));

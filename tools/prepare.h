@@ -9,10 +9,14 @@
 
 #include "tool.h"
 
+/* What an approximate cell remembers. */
+typedef enum settings_cells { CELLS_FLAT, CELLS_NORMAL, CELLS_PLANE } settings_cells;
+
 /* The options of `aset render`; settings_default gives the defaults. */
 typedef struct settings {
     const aset_method *method;
     uint32_t approx_kinds, approx_depth;
+    settings_cells cells;
     uint32_t grid[3], tree_depth, leaf; /* 0: automatic */
     double curtail;
     bool curtail_more;
@@ -37,6 +41,9 @@ typedef struct prepared {
     aset_scene scene;
     aset_space space;
     aset_summary summary;
+    aset_draft draft;
+    bool is_drafted, is_streamed; /* there is a draft; and there is nothing else */
+    aset_counts counts;           /* of the source */
     aset_scratch *scratches; /* one for each thread */
     aset_tracer tracer;
     aset_view view;

@@ -26,7 +26,8 @@ static const char help[] =
     "      --grid N            divisions on every axis; or NXxNYxNZ, or auto (as many as pay and fit); default auto\n"
     "      --octree-depth D    octree, arts, excell: halvings of each axis; default 6\n"
     "      --leaf K            octree, arts, excell: objects in a leaf that is not halved; default 1\n"
-    "      --cells flat        what a cell remembers: flat, the paper's average texture\n"
+    "      --cells WORD        what a cell remembers: flat, the paper's average texture; normal or plane, drafts of mset and\n"
+    "                          grid: the surface's direction besides, or where it lies as well; default flat\n"
     "      --curtail F         trapped rays: fraction of a voxel's diagonal, 0 for off; default 0.5\n"
     "      --curtail-when W    less or more: which side of it is curtailed; default less\n"
     "      --memory BYTES      the arena (K = 1024, M): not one byte more is used; default 8M\n"
@@ -152,12 +153,18 @@ static bool check_side(const settings *s) {
 }
 
 static bool parse_more(request *r, int option) {
-    static const tool_word cells[] = {{"flat", 0}, {NULL, 0}}, rules[] = {{"spd", 1}, {NULL, 0}},
+    static const tool_word cells[] = {{"flat", CELLS_FLAT}, {"normal", CELLS_NORMAL}, {"plane", CELLS_PLANE}, {NULL, 0}},
+                           rules[] = {{"spd", 1}, {NULL, 0}},
                            sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}};
     settings *s = &r->settings;
     unsigned word = 0;
     switch (option) {
-    case OPTION_CELLS: return tool_parse_word("--cells", optarg, cells, &word);
+    case OPTION_CELLS:
+        if (!tool_parse_word("--cells", optarg, cells, &word)) {
+            return false;
+        }
+        s->cells = (settings_cells)word;
+        return true;
     case OPTION_CURTAIL: return tool_parse_real("--curtail", optarg, 0, 1e6, &s->curtail);
     case OPTION_CURTAIL_WHEN:
         if (!tool_parse_word("--curtail-when", optarg, sides, &word)) {
@@ -372,6 +379,7 @@ static bool write_report(tool_output *output, const aset_report *report, report_
 }
 
 static int render(const request *r) {
+    static const char *const cells[] = {"flat", "normal", "plane"};
     prepared p;
     aset_statistics statistics;
     memset(&statistics, 0, sizeof statistics);
@@ -385,8 +393,8 @@ static int render(const request *r) {
     bool done = (r->stats == NULL || tool_output_open(&stats, r->stats)) && (!r->report || tool_output_open(&text, "-"));
     double start = tool_seconds();
     done = done && draw_picture(r, &p, &statistics);
-    aset_report report = {&p.tracer, &p.arena, &statistics, aset_method_name(r->settings.method), "flat",
-                          p.load_s,  p.build_s, tool_seconds() - start};
+    aset_report report = {&p.tracer, &p.arena, &statistics, aset_method_name(r->settings.method), cells[r->settings.cells],
+                          p.load_s,  p.build_s, tool_seconds() - start, &p.counts};
     if (done && r->stats != NULL) {
         done = write_report(&stats, &report, aset_report_json);
     }

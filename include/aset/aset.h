@@ -7,7 +7,8 @@
  *   arena.h    the caller's block of memory        aset_arena_init
  *   scene.h    entities, sinks, the scene          aset_scene_init, aset_scene_sink, aset_counter_sink
  *   space.h    a space subdivision over the scene  aset_space_build
- *   draft.h    what a cell remembers (ASET)        aset_summary_build
+ *   summary.h  what a cell remembers (ASET)        aset_summary_build
+ *   draft.h    a model that is only drafted        aset_baker_init, aset_draft_open
  *   trace.h    rays, colours, rows of a picture    aset_render_rows, aset_closest_hit, aset_any_hit
  *   report.h   what it took                        aset_report_text
  *
@@ -24,6 +25,7 @@
 #include "aset/arena.h"
 #include "aset/scene.h"
 #include "aset/space.h"
+#include "aset/summary.h"
 #include "aset/draft.h"
 #include "aset/trace.h"
 #include "aset/report.h"

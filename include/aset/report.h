@@ -18,6 +18,7 @@ typedef struct aset_report {
     const char *method; /* aset_method_name of the space's method */
     const char *cells;  /* what a cell remembers: "flat" */
     double load_s, build_s, render_s; /* wall clock, measured by the caller: the library has no clock */
+    const aset_counts *counts; /* of the source, where the tracer's scene is not all of it: of a draft's, say */
 } aset_report;
 
 /*

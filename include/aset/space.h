@@ -130,7 +130,7 @@ typedef struct aset_space_size {
      ASET_BYTES_LEAVES(leaves, references, objects) + ASET_ROUND(4u * (size_t)(listed)))
 
 /*
- * Bytes of a summary of a space of so many non-empty cells with so many (at least 1) different textures (draft.h): the
+ * Bytes of a summary of a space of so many non-empty cells with so many (at least 1) different textures (summary.h): the
  * textures, and for each cell the number of its own.
  */
 #define ASET_BYTES_SUMMARY(cells, textures)                                                                            \

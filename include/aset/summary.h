@@ -1,8 +1,8 @@
 /*
- * draft.h - what a cell remembers: summaries, which approximate rays read instead of objects (ASET).
+ * summary.h - what a cell remembers: summaries, which approximate rays read instead of objects (ASET).
  */
-#ifndef ASET_DRAFT_H
-#define ASET_DRAFT_H
+#ifndef ASET_SUMMARY_H
+#define ASET_SUMMARY_H
 
 #include "aset/space.h"
 

@@ -8,6 +8,7 @@
 #define ASET_TRACE_H
 
 #include "aset/draft.h"
+#include "aset/summary.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -18,7 +19,12 @@ typedef struct aset_tracer {
     const aset_scene *scene; /* finished */
     const aset_space *space; /* built over it */
 #if ASET_WITH_APPROXIMATION
-    const aset_summary *summary; /* of that space; NULL: every ray is exact, whatever follows */
+    const aset_summary *summary; /* of that space; with neither this nor a draft every ray is exact, whatever follows */
+#if ASET_WITH_DRAFTS
+    const aset_draft *draft; /* not NULL: approximate rays meet this and not the summary. If all kinds are approximate from
+                                depth 0, scene may be &draft->stage and space NULL */
+    bool draft_sides;        /* a voxel's own side is the hit, with its facet's normal, instead of the facet's plane */
+#endif
     uint32_t approx_kinds; /* which kinds of rays may be approximate: a mask of aset_kind */
     uint32_t approx_depth; /* rays of this depth and deeper are approximate; the eye ray has depth 0, its reflected ray 1,
                               a shadow ray the depth of the ray whose hit it lights. 1 is the paper's setting */
@@ -40,7 +46,9 @@ typedef struct aset_tracer {
 #define ASET_DEPTH_MAX 1000u
 
 /*
- * The nearest hit of a ray: exact (on an object), or approximate (on the first cell with a texture that is met at t > 0).
+ * The nearest hit of a ray: exact (on an object), or approximate (on the first cell with a texture that is met at t > 0; with a
+ * draft on what covers most of the ray: a facet, whose number is hit->cell and whose material, by aset_draft_texture, is
+ * not pointed to; or a kept object, with its number in draft->stage).
  * *found says whether there is one; hit is written only then. An approximate query without a summary, a ray with a number
  * that is not finite (t_max may be INFINITY) or without direction: ASET_ERR_ARGUMENT. Adds to *statistics unless it is NULL.
  */

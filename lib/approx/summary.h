@@ -2,7 +2,7 @@
 #ifndef ASET_APPROX_SUMMARY_H
 #define ASET_APPROX_SUMMARY_H
 
-#include "aset/draft.h"
+#include "aset/summary.h"
 #include "base/bits.h"
 
 #if ASET_WITH_APPROXIMATION

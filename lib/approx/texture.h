@@ -2,7 +2,7 @@
 #ifndef ASET_APPROX_TEXTURE_H
 #define ASET_APPROX_TEXTURE_H
 
-#include "aset/draft.h"
+#include "aset/summary.h"
 
 #if ASET_WITH_APPROXIMATION
 

@@ -87,16 +87,42 @@ static void put_kinds(text *t, uint32_t kinds, const char *quote, const char *no
 
 static uint32_t kinds_of(const aset_tracer *tracer) {
 #if ASET_WITH_APPROXIMATION
-    return tracer->summary != NULL ? tracer->approx_kinds : 0;
+    bool can = tracer->summary != NULL;
+#if ASET_WITH_DRAFTS
+    can = can || tracer->draft != NULL;
+#endif
+    return can ? tracer->approx_kinds : 0;
 #else
     (void)tracer;
     return 0;
 #endif
 }
 
-static void json_scene(text *t, const aset_report *r) {
+static aset_counts counts_of(const aset_report *r) {
     const aset_counts none = {0, 0, 0, 0, 0, 0, 0, 0};
-    const aset_counts *c = r->tracer->scene != NULL ? &r->tracer->scene->counts : &none;
+    return r->counts != NULL ? *r->counts : r->tracer->scene != NULL ? r->tracer->scene->counts : none;
+}
+
+/* Divisions and structure: of the space, or of a draft that has none. A draft's leaves are the sides of its voxels. */
+static aset_structure structure_of(const aset_tracer *tracer, uint32_t divisions[3]) {
+    aset_structure s = {0, 0, 0, 0, 0};
+    memset(divisions, 0, 3 * sizeof *divisions);
+    if (tracer->space != NULL) {
+        memcpy(divisions, tracer->space->slices.n, 3 * sizeof *divisions);
+        return tracer->space->structure;
+    }
+#if ASET_WITH_DRAFTS
+    if (tracer->draft != NULL) {
+        memcpy(divisions, tracer->draft->n, 3 * sizeof *divisions);
+        s.leaves = 6 * (uint64_t)divisions[0] * divisions[1] * divisions[2];
+        s.nonempty = s.references = tracer->draft->n_facets;
+    }
+#endif
+    return s;
+}
+
+static void json_scene(text *t, const aset_report *r) {
+    aset_counts counts = counts_of(r), *c = &counts;
     put(t, "{\"scene\":{");
     put_field(t, "objects", c->objects);
     put_member(t, "polygons", c->polygons);
@@ -120,13 +146,13 @@ static void json_scene(text *t, const aset_report *r) {
     put(t, "\"");
 }
 
-static void json_structure(text *t, const aset_space *space) {
-    const aset_structure none = {0, 0, 0, 0, 0};
-    const aset_structure *s = space != NULL ? &space->structure : &none;
+static void json_structure(text *t, const aset_tracer *tracer) {
+    uint32_t divisions[3];
+    aset_structure structure = structure_of(tracer, divisions), *s = &structure;
     put(t, ",\"grid\":[");
     for (int a = 0; a < 3; a++) {
         put(t, a > 0 ? "," : "");
-        put_number(t, space != NULL ? space->slices.n[a] : 0);
+        put_number(t, divisions[a]);
     }
     put(t, "],\"structure\":{");
     put_field(t, "interior", s->interior);
@@ -167,6 +193,11 @@ static void json_statistics(text *t, const aset_statistics *given) {
 static void json_memory(text *t, const aset_report *r) {
     uint32_t used = 0, capacity = 0, merged = 0;
 #if ASET_WITH_APPROXIMATION
+#if ASET_WITH_DRAFTS
+    if (r->tracer->draft != NULL) {
+        used = capacity = r->tracer->draft->n_textures;
+    } else
+#endif
     if (r->tracer->summary != NULL) {
         used = r->tracer->summary->n_textures;
         capacity = r->tracer->summary->capacity;
@@ -190,7 +221,7 @@ static void json_memory(text *t, const aset_report *r) {
 size_t aset_report_json(char *buffer, size_t size, const aset_report *report) {
     text t = {buffer, size, 0};
     json_scene(&t, report);
-    json_structure(&t, report->tracer->space);
+    json_structure(&t, report->tracer);
     json_statistics(&t, report->statistics);
     json_memory(&t, report);
     put(&t, ",\"time\":{\"load_s\":");
@@ -218,7 +249,7 @@ static void put_counted(text *t, uint64_t x, const char *words) {
 }
 
 static void text_scene(text *t, const aset_report *r) {
-    const aset_counts *c = &r->tracer->scene->counts;
+    aset_counts counts = counts_of(r), *c = &counts;
     put_label(t, "scene");
     put_counted(t, c->objects, " objects: ");
     put_counted(t, c->polygons, " polygons, ");
@@ -230,23 +261,33 @@ static void text_scene(text *t, const aset_report *r) {
 }
 
 static void text_space(text *t, const aset_report *r) {
-    const aset_space *space = r->tracer->space;
+    uint32_t n[3];
+    aset_structure s = structure_of(r->tracer, n);
     put_label(t, "space");
     put(t, r->method != NULL ? r->method : "");
     put(t, ", ");
-    put_counted(t, space->slices.n[0], " x ");
-    put_counted(t, space->slices.n[1], " x ");
-    put_counted(t, space->slices.n[2], " divisions, ");
-    put_counted(t, space->structure.nonempty, " of ");
-    put_counted(t, space->structure.leaves, " cells not empty, ");
-    put_decimal(t, ratio(space->structure.references, space->structure.nonempty), 2);
+    put_counted(t, n[0], " x ");
+    put_counted(t, n[1], " x ");
+    put_counted(t, n[2], " divisions, ");
+    put_counted(t, s.nonempty, " of ");
+    put_counted(t, s.leaves, " cells not empty, ");
+    put_decimal(t, ratio(s.references, s.nonempty), 2);
     put(t, " objects each\n");
-    if (space->structure.merged > 0) {
+    if (s.merged > 0) {
         put_label(t, "merged");
-        put_counted(t, space->structure.merged, " extents of objects share a slice with others\n");
+        put_counted(t, s.merged, " extents of objects share a slice with others\n");
     }
     put_label(t, "approximate");
     put_kinds(t, kinds_of(r->tracer), "", "nothing");
+#if ASET_WITH_DRAFTS
+    if (r->tracer->draft != NULL) {
+        put(t, " from depth ");
+        put_counted(t, r->tracer->approx_depth, ", a draft of ");
+        put_counted(t, r->tracer->draft->n_words * sizeof(uint32_t), " bytes, ");
+        put_counted(t, r->tracer->draft->n_facets, " facets, ");
+        put_counted(t, r->tracer->draft->stage.counts.objects, " objects kept exact");
+    }
+#endif
 #if ASET_WITH_APPROXIMATION
     if (r->tracer->summary != NULL) {
         put(t, " from depth ");
@@ -298,7 +339,7 @@ size_t aset_report_text(char *buffer, size_t size, const aset_report *report) {
     if (report->tracer->scene != NULL) {
         text_scene(&t, report);
     }
-    if (report->tracer->space != NULL) {
+    if (report->tracer->scene != NULL || report->tracer->space != NULL) {
         text_space(&t, report);
     }
     if (report->statistics != NULL) {

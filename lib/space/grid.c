@@ -43,9 +43,6 @@ static aset_real visit_voxel(const aset_space *space, walk_request *walk, const 
     cell.face = is_first ? FACE_NONE : way->axis * 2 + (way->step[way->axis] < 0);
     cell.t = way->t;
     cell.n = 0;
-    if (!walk->wants_references) {
-        return way->t > 0 ? walk->visit(walk, &cell) : walk->limit;
-    }
     if (!is_first) {
         before[way->axis] -= way->step[way->axis];
     }
@@ -69,8 +66,13 @@ static void grid_go(const aset_space *space, const probe *ray, walk_request *wal
     const aset_cells *cells = &space->cells;
     const aset_slices *slices = &space->slices;
     voxel_box whole = slices_whole(slices);
+    const uint32_t faces[3] = {0, 0, 0};
     brick_walk bricks;
     dda way;
+    if (!walk->wants_references) {
+        bricks_go(space, ray, walk, faces, 1, true);
+        return;
+    }
     if (cells->n_cells == 0 || (!dda_inside(&way, slices, ray) && !dda_enter(&way, slices, ray, &whole)) ||
         way.t > walk->limit) {
         return;

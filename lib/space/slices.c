@@ -45,19 +45,10 @@ static int32_t locate_in_table(const aset_real *planes, int32_t last, aset_real 
 }
 
 int32_t slices_locate(const aset_slices *slices, int a, aset_real x) {
-    int32_t last = (int32_t)slices->n[a] - 1;
     if (slices->planes[a] != NULL) {
-        return locate_in_table(slices->planes[a], last, x);
+        return locate_in_table(slices->planes[a], (int32_t)slices->n[a] - 1, x);
     }
-    aset_real guess = (x - slices->low[a]) * slices->per_width[a];
-    int32_t k = !(guess > 0) ? 0 : guess >= (aset_real)last ? last : (int32_t)guess;
-    while (k > 0 && slices_plane(slices, a, k) > x) {
-        k--;
-    }
-    while (k < last && slices_plane(slices, a, k + 1) <= x) {
-        k++;
-    }
-    return k;
+    return slices_locate_even(slices, a, x);
 }
 
 voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object) {
@@ -99,7 +90,8 @@ static bool crossed(const aset_slices *slices, const probe *ray, int b, int32_t 
  */
 static bool settle(const aset_slices *slices, const probe *ray, int b, aset_real t, int axis, const voxel_box *window,
                    int32_t *voxel) {
-    int32_t k = slices_locate(slices, b, ray->origin[b] + t * ray->direction[b]);
+    aset_real x = ray->origin[b] + t * ray->direction[b];
+    int32_t k = slices->planes[b] == NULL ? slices_guess(slices, b, x) : slices_locate(slices, b, x);
     int up = ray->direction[b] > 0;
     int32_t step = up ? 1 : -1, entry = up ? 0 : 1; /* a voxel's entry slice is k + entry, its exit k + 1 - entry */
     k = k < window->low[b] ? window->low[b] : k > window->high[b] ? window->high[b] : k;
@@ -167,20 +159,31 @@ bool dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const vox
     return true;
 }
 
-bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray) {
-    dda_prepare(walk, slices, ray);
+bool slices_voxel(const aset_slices *slices, const probe *ray, int32_t voxel[3]) {
+    const aset_real *at = ray->origin;
+    if (at[0] < slices->first[0] || at[0] > slices->last[0] || at[1] < slices->first[1] || at[1] > slices->last[1] ||
+        at[2] < slices->first[2] || at[2] > slices->last[2]) {
+        return false;
+    }
     for (int a = 0; a < 3; a++) {
-        aset_real x = ray->origin[a];
-        if (x < slices->first[a] || x > slices->last[a]) {
-            return false;
-        }
-        int32_t k = slices_locate(slices, a, x);
-        if (ray->moves[a] && ray->direction[a] < 0 && k > 0 && slices_plane(slices, a, k) == x) {
+        int32_t k = slices->planes[a] == NULL ? slices_locate_even(slices, a, at[a])
+                                              : locate_in_table(slices->planes[a], (int32_t)slices->n[a] - 1, at[a]);
+        if (k > 0 && ray->direction[a] < 0 && ray->moves[a] && slices_plane(slices, a, k) == at[a]) {
             k--; /* on a slice, going down: that slice is crossed at t = 0, as upwards it is by locate */
         }
-        walk->voxel[a] = k;
+        voxel[a] = k;
+    }
+    return true;
+}
+
+bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray) {
+    if (!slices_voxel(slices, ray, walk->voxel)) {
+        return false;
+    }
+    dda_prepare(walk, slices, ray);
+    for (int a = 0; a < 3; a++) {
         if (ray->moves[a]) {
-            walk->next[a] = dda_crossing(slices, ray, a, k + (ray->direction[a] > 0));
+            walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (ray->direction[a] > 0));
         }
     }
     return true;

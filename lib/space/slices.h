@@ -56,6 +56,30 @@ static inline aset_real slices_plane(const aset_slices *slices, int a, int32_t k
 /* The voxel that holds x: the last one whose lower slice is not above x; the first or last for x outside. */
 int32_t slices_locate(const aset_slices *slices, int a, aset_real x);
 
+/* The voxel of x, or by rounding the one beside it, if all slices are equally far apart. */
+static inline int32_t slices_guess(const aset_slices *slices, int a, aset_real x) {
+    aset_real guess = (x - slices->low[a]) * slices->per_width[a];
+    int32_t last = (int32_t)slices->n[a] - 1;
+    return !(guess > 0) ? 0 : guess >= (aset_real)last ? last : (int32_t)guess;
+}
+
+/* slices_locate for these. */
+static inline int32_t slices_locate_even(const aset_slices *slices, int a, aset_real x) {
+    aset_real low = slices->low[a], width = slices->width[a];
+    int32_t last = (int32_t)slices->n[a] - 1, k = slices_guess(slices, a, x);
+    aset_real slice = (aset_real)k; /* exact */
+    for (; k > 0 && low + slice * width > x; k--) { /* slices_plane between the ends */
+        slice -= 1;
+    }
+    for (slice += 1; k < last && low + slice * width <= x; k++) {
+        slice += 1;
+    }
+    return k;
+}
+
+/* The voxel that a ray from its origin is in. False: the origin is outside the volume. */
+bool slices_voxel(const aset_slices *slices, const probe *ray, int32_t voxel[3]);
+
 typedef struct dda {
     int32_t voxel[3], step[3], end[3]; /* end: the voxel number with which the ray has left the volume */
     aset_real next[3];                 /* t at which each axis is crossed next */

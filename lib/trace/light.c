@@ -4,17 +4,23 @@
  */
 #include "trace/light.h"
 
+/* Well within the distances whose squares neither overflow nor lose bits. */
+#define NEAR R(1e-10)
+#define FAR R(1e10)
+
 bool light_towards(light_ray *towards, const aset_scene *scene, const aset_light *light, aset_vec3 point) {
     if (light->directional) {
         towards->direction = light->position; /* the scene keeps it in unit length */
         towards->distance = REAL_INFINITY;
     } else {
         aset_vec3 way = vec_sub(light->position, point);
-        towards->direction = vec_unit(way);
-        towards->distance = vec_length(way);
-        if (!(towards->distance > 0)) {
+        aset_real distance = vec_length(way);
+        if (!(distance > 0)) {
             return false;
         }
+        /* vec_unit takes the same root where the square is in range: it need not be drawn twice */
+        towards->direction = distance > NEAR && distance < FAR ? vec_scale(way, 1 / distance) : vec_unit(way);
+        towards->distance = distance;
     }
     if (light->has_colour) {
         towards->colour = light->colour;

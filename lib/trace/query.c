@@ -164,12 +164,121 @@ aset_real query_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, ase
     return moved;
 }
 
+#if ASET_WITH_DRAFTS
+
+static bool has_draft(const aset_tracer *tracer) {
+    return tracer->draft != NULL;
+}
+
+static draft_mode mode_of(const aset_tracer *tracer) {
+    return tracer->draft_sides ? DRAFT_SIDE : DRAFT_PLANE;
+}
+
+/* The nearest of the objects that the draft keeps exact; t_max if there is none before it. */
+static aset_real nearest_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                              aset_statistics *statistics) {
+    const aset_scene *stage = &draft->stage;
+    probe ray;
+    aset_real best = t_max;
+    if (stage->counts.objects == 0) {
+        return best;
+    }
+    aset_real moved = query_ready(&ray, stage, origin, direction);
+    for (uint32_t i = 0; i < stage->counts.objects; i++) {
+        aset_real t = object_nearest(stage, i, &ray, best - moved);
+        statistics->tests++;
+        if (t + moved < best) {
+            statistics->test_hits++;
+            best = t + moved;
+            hit->object = i;
+            hit->t_near = t;
+        }
+    }
+    hit->near = probe_origin(&ray);
+    hit->t = best;
+    hit->scene = stage;
+    hit->cell = 0;
+    hit->curtailed = false;
+    return best;
+}
+
+static uint32_t layers_of_draft(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tracer, aset_vec3 origin,
+                                aset_vec3 direction, aset_real t_max, aset_statistics *statistics) {
+    draft_layer met[DRAFT_LAYERS_MAX];
+    draft_counts counts;
+    query_hit kept;
+    aset_real end = nearest_kept(&kept, tracer->draft, origin, direction, t_max, statistics), left = 1;
+    uint32_t n = draft_layers(met, tracer->draft, mode_of(tracer), origin, direction, end, &counts);
+    statistics->cells_visited += counts.cells;
+    statistics->nonempty_visited += counts.nonempty;
+    statistics->approx_hits += n > 0;
+    for (uint32_t i = 0; i < n; i++) {
+        query_hit *hit = layers + i;
+        hit->t = hit->t_near = met[i].t;
+        hit->near = origin;
+        hit->object = ASET_NO_OBJECT;
+        hit->cell = met[i].facet;
+        hit->face = met[i].face;
+        hit->curtailed = false;
+        hit->cover = met[i].cover;
+        hit->scene = NULL;
+        left -= met[i].cover;
+    }
+    if (end < t_max && left > 0) {
+        layers[n] = kept;
+        layers[n++].cover = left;
+    }
+    return n;
+}
+
+static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                      aset_statistics *statistics) {
+    draft_counts counts;
+    query_hit kept;
+    if (nearest_kept(&kept, tracer->draft, origin, direction, t_max, statistics) < t_max) {
+        return true;
+    }
+    bool blocked = draft_blocks(tracer->draft, mode_of(tracer), origin, direction, t_max, &counts);
+    statistics->cells_visited += counts.cells;
+    statistics->nonempty_visited += counts.nonempty;
+    statistics->approx_hits += blocked;
+    return blocked;
+}
+
+aset_real query_clearance(const aset_tracer *tracer) {
+    return has_draft(tracer) ? draft_clearance(tracer->draft) : 0;
+}
+
+#else
+
+aset_real query_clearance(const aset_tracer *tracer) {
+    (void)tracer;
+    return 0;
+}
+
+#endif
+
 bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                    bool approximate, aset_statistics *statistics) {
     probe ray;
+#if ASET_WITH_DRAFTS
+    if (approximate && has_draft(tracer)) { /* what covers most */
+        query_hit layers[QUERY_LAYERS_MAX];
+        uint32_t n = layers_of_draft(layers, tracer, origin, direction, t_max, statistics), most = 0;
+        for (uint32_t i = 1; i < n; i++) {
+            most = layers[i].cover > layers[most].cover ? i : most;
+        }
+        if (n > 0) {
+            *hit = layers[most];
+        }
+        return n > 0;
+    }
+#endif
     aset_real moved = query_ready(&ray, tracer->scene, origin, direction);
     hit->near = probe_origin(&ray);
     hit->curtailed = false;
+    hit->cover = 1;
+    hit->scene = NULL;
 #if ASET_WITH_APPROXIMATION
     if (approximate) {
         bool found = approximate_hit(hit, tracer, &ray, moved, t_max, statistics);
@@ -190,11 +299,27 @@ bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, 
     hit->t_near = q.best;
     hit->t = q.best + moved;
     hit->object = q.object;
+    hit->scene = tracer->scene;
     return found;
+}
+
+uint32_t query_layers(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction,
+                      bool approximate, aset_statistics *statistics) {
+#if ASET_WITH_DRAFTS
+    if (approximate && has_draft(tracer)) {
+        return layers_of_draft(layers, tracer, origin, direction, REAL_INFINITY, statistics);
+    }
+#endif
+    return query_closest(layers, tracer, origin, direction, REAL_INFINITY, approximate, statistics);
 }
 
 bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
                aset_statistics *statistics) {
+#if ASET_WITH_DRAFTS
+    if (approximate && has_draft(tracer)) {
+        return draft_any(tracer, origin, direction, t_max, statistics);
+    }
+#endif
 #if ASET_WITH_APPROXIMATION
     if (approximate) {
         query_hit hit; /* the first cell is any cell */
@@ -208,28 +333,56 @@ bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction,
     return exact(&q, tracer, &ray, moved, t_max, true, statistics);
 }
 
-void query_surface(aset_hit *surface, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction) {
+#if ASET_WITH_APPROXIMATION
+
+/* The normal of a slice, towards the ray. */
+static aset_vec3 slice_normal(int face) {
+    aset_real towards = (face & 1) != 0 ? R(1) : R(-1);
+    int axis = face / 2;
+    return vec(axis == 0 ? towards : 0, axis == 1 ? towards : 0, axis == 2 ? towards : 0);
+}
+
+static void cell_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit) {
+    surface->cell = hit->cell;
+#if ASET_WITH_DRAFTS
+    if (has_draft(tracer)) {
+        facet f = facet_read(tracer->draft, hit->cell);
+        surface->normal = facet_normal(tracer->draft, &f);
+        surface->geometric = tracer->draft_sides ? slice_normal(hit->face) : surface->normal;
+        *own = draft_material(tracer->draft, f.texture);
+        surface->material = own;
+        return;
+    }
+#endif
+    (void)own;
+    surface->geometric = slice_normal(hit->face);
+    surface->normal = surface->geometric;
+    surface->material = summary_texture(tracer->summary, hit->cell);
+}
+
+#endif
+
+void query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit,
+                   aset_vec3 direction) {
     surface->t = hit->t;
     surface->point = vec_along(hit->near, hit->t_near, direction);
     surface->object = hit->object;
     surface->cell = 0;
 #if ASET_WITH_APPROXIMATION
     if (hit->object == ASET_NO_OBJECT) {
-        aset_real towards = (hit->face & 1) != 0 ? R(1) : R(-1);
-        int axis = hit->face / 2;
-        surface->cell = hit->cell;
-        surface->geometric = vec(axis == 0 ? towards : 0, axis == 1 ? towards : 0, axis == 2 ? towards : 0);
-        surface->normal = surface->geometric;
-        surface->material = summary_texture(tracer->summary, hit->cell);
+        cell_surface(surface, own, tracer, hit);
         return;
     }
 #endif
-    object_normals(tracer->scene, hit->object, surface->point, &surface->normal, &surface->geometric);
-    surface->material = shape_of(tracer->scene, hit->object).material;
+    (void)own, (void)tracer;
+    object_normals(hit->scene, hit->object, surface->point, &surface->normal, &surface->geometric);
+    surface->material = shape_of(hit->scene, hit->object).material;
 }
 
 static bool can_approximate(const aset_tracer *tracer) {
-#if ASET_WITH_APPROXIMATION
+#if ASET_WITH_DRAFTS
+    return tracer->summary != NULL || has_draft(tracer);
+#elif ASET_WITH_APPROXIMATION
     return tracer->summary != NULL;
 #else
     (void)tracer;
@@ -237,16 +390,25 @@ static bool can_approximate(const aset_tracer *tracer) {
 #endif
 }
 
+bool query_can(const aset_tracer *tracer, bool approximate) {
+#if ASET_WITH_DRAFTS
+    if (approximate && has_draft(tracer)) {
+        return tracer->scene != NULL;
+    }
+#endif
+    return tracer->scene != NULL && tracer->space != NULL && (!approximate || can_approximate(tracer));
+}
+
 /* A caller's ray, checked; its direction and t_max in unit lengths. length: of the caller's direction. */
 static aset_status accept_ray(const aset_tracer *tracer, const aset_ray *ray, bool approximate, aset_vec3 *direction,
                               aset_real *length) {
-    if (tracer == NULL || ray == NULL || tracer->scene == NULL || tracer->space == NULL) {
+    if (tracer == NULL || ray == NULL || !query_can(tracer, approximate)) {
         return ASET_ERR_ARGUMENT;
     }
     *direction = vec_unit(ray->direction);
     *length = vec_length(ray->direction);
     bool fine = vec_finite(ray->origin) && vec_finite(ray->direction) && real_finite(*length) && *length > 0 &&
-                ray->t_max == ray->t_max && (!approximate || can_approximate(tracer));
+                ray->t_max == ray->t_max;
     return fine ? ASET_OK : ASET_ERR_ARGUMENT;
 }
 
@@ -266,7 +428,9 @@ aset_status aset_closest_hit(bool *found, aset_hit *hit, const aset_tracer *trac
     *found = query_closest(&q, tracer, ray->origin, direction, ray->t_max * length, approximate,
                            statistics != NULL ? statistics : &ignored);
     if (*found) {
-        query_surface(hit, tracer, &q, direction);
+        aset_material own;
+        query_surface(hit, &own, tracer, &q, direction);
+        hit->material = hit->material != &own ? hit->material : NULL;
         hit->t = q.t / length;
     }
     return ASET_OK;

@@ -3,8 +3,17 @@
 #define ASET_TRACE_QUERY_H
 
 #include "aset/trace.h"
+#if ASET_WITH_DRAFTS
+#include "approx/draft_ray.h"
+#endif
 #include "base/vec.h"
 #include "scene/shape.h"
+
+#if ASET_WITH_DRAFTS
+#define QUERY_LAYERS_MAX (DRAFT_LAYERS_MAX + 1)
+#else
+#define QUERY_LAYERS_MAX 1
+#endif
 
 /* What a closest-hit query found. */
 typedef struct query_hit {
@@ -15,7 +24,12 @@ typedef struct query_hit {
     uint32_t cell;   /* approximate: dense number */
     int face;        /* approximate: axis * 2, + 1 going down */
     bool curtailed;  /* approximate: the ray was trapped, and hit nothing */
+    aset_real cover; /* the share of the ray that ends here: 1 unless a draft covers it in part */
+    const aset_scene *scene; /* of the object; NULL for a cell */
 } query_hit;
+
+/* Whether the tracer has what exact or approximate queries need. */
+bool query_can(const aset_tracer *tracer, bool approximate);
 
 /* Makes a ray of unit direction ready; from outside it is moved near the scene. By how much. */
 aset_real query_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction);
@@ -26,7 +40,18 @@ bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, 
 bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
                aset_statistics *statistics);
 
-/* Point, normals and material of a hit. */
-void query_surface(aset_hit *surface, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction);
+/*
+ * What the ray meets, in order, until it is covered: one hit unless a draft answers. How many; the rest of the ray meets
+ * nothing.
+ */
+uint32_t query_layers(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction,
+                      bool approximate, aset_statistics *statistics);
+
+/* Point, normals and material of a hit; own is where the material of a draft's facet is put. */
+void query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit,
+                   aset_vec3 direction);
+
+/* How far from a surface rays start that the approximation will answer: 0 where the usual distance is enough. */
+aset_real query_clearance(const aset_tracer *tracer);
 
 #endif

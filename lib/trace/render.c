@@ -64,14 +64,14 @@ typedef struct drawing {
 /* One sample at (x, y) in pixels from the upper left corner; added to the pixel, clamped. */
 static void add_sample(const drawing *d, aset_real x, aset_real y, aset_colour *sum, aset_real *cover) {
     aset_vec3 origin, direction;
-    bool hit;
+    aset_real covered;
     camera_ray(&d->eye, 2 * x / (aset_real)d->picture->width - 1, 2 * y / (aset_real)d->picture->height - 1, &origin,
                &direction);
-    aset_colour c = trace_tree(d->tracer, origin, direction, d->scratch, d->statistics, &hit);
+    aset_colour c = trace_tree(d->tracer, origin, direction, d->scratch, d->statistics, &covered);
     sum->r += clamp(c.r);
     sum->g += clamp(c.g);
     sum->b += clamp(c.b);
-    *cover += hit ? 1 : 0;
+    *cover += covered;
 }
 
 static void draw_pixel(const drawing *d, uint32_t column, uint32_t row, unsigned char *at) {

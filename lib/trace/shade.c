@@ -14,7 +14,11 @@
 
 bool policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t depth) {
 #if ASET_WITH_APPROXIMATION
-    return tracer->summary != NULL && (tracer->approx_kinds & (uint32_t)kind) != 0 && depth >= tracer->approx_depth;
+    bool can = tracer->summary != NULL;
+#if ASET_WITH_DRAFTS
+    can = can || tracer->draft != NULL;
+#endif
+    return can && (tracer->approx_kinds & (uint32_t)kind) != 0 && depth >= tracer->approx_depth;
 #else
     (void)tracer;
     (void)kind;
@@ -24,23 +28,31 @@ bool policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t dept
 }
 
 void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction) {
-    query_surface(&s->hit, tracer, hit, direction);
+    query_surface(&s->hit, &s->own, tracer, hit, direction);
     s->direction = direction;
     s->entering = vec_dot(s->hit.geometric, direction) <= 0;
     s->facing = s->entering ? s->hit.geometric : vec_scale(s->hit.geometric, -1);
     s->normal = s->entering ? s->hit.normal : vec_scale(s->hit.normal, -1);
     s->nudge = (vec_largest(s->hit.point) + hit->t_near) * NUDGE;
+    s->clearance = query_clearance(tracer);
 }
 
 aset_vec3 shade_start(const shading *s, aset_vec3 direction) {
     return vec_along(s->hit.point, vec_dot(direction, s->facing) < 0 ? -s->nudge : s->nudge, s->facing);
 }
 
+aset_vec3 shade_start_for(const shading *s, aset_vec3 direction, bool approximate) {
+    if (!approximate || !(s->clearance > s->nudge)) {
+        return shade_start(s, direction);
+    }
+    return vec_along(s->hit.point, vec_dot(direction, s->facing) < 0 ? -s->clearance : s->clearance, s->facing);
+}
+
 static bool in_shadow(const aset_tracer *tracer, const shading *s, const light_ray *towards, uint32_t depth,
                       aset_statistics *statistics) {
     bool approximate = policy_approximate(tracer, ASET_SHADOW, depth);
-    bool hit = query_any(tracer, shade_start(s, towards->direction), towards->direction, towards->distance, approximate,
-                         statistics);
+    bool hit = query_any(tracer, shade_start_for(s, towards->direction, approximate), towards->direction, towards->distance,
+                         approximate, statistics);
     statistics->shadow++;
     statistics->shadow_hit += hit;
     return hit;

@@ -11,7 +11,9 @@ typedef struct shading {
     aset_vec3 normal;    /* shading normal, on the side that is seen */
     aset_vec3 facing;    /* geometric normal, on the side that the ray came from */
     bool entering;       /* the ray came to the surface's front */
-    aset_real nudge;     /* how far new rays start from the surface */
+    aset_real nudge;     /* how far new rays start from the surface, */
+    aset_real clearance; /* and how far at least those that a draft will answer */
+    aset_material own;   /* the material of a draft's facet */
 } shading;
 
 void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction);
@@ -24,6 +26,9 @@ aset_colour shade_local(const aset_tracer *tracer, const shading *s, uint32_t de
 
 /* Where a ray that leaves the surface along direction starts: off the surface, on the side it goes to. */
 aset_vec3 shade_start(const shading *s, aset_vec3 direction);
+
+/* The same for a ray that the approximation answers, if approximate. */
+aset_vec3 shade_start_for(const shading *s, aset_vec3 direction, bool approximate);
 
 aset_vec3 shade_reflected(const shading *s);
 

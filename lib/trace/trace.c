@@ -31,10 +31,10 @@ aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena 
 }
 
 /* A ray to be traced later; depth is the new ray's. */
-static void leave(aset_scratch *scratch, uint32_t *n, const shading *s, aset_vec3 direction, aset_real weight,
-                  uint32_t depth, aset_kind kind) {
+static void leave(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer, const shading *s, aset_vec3 direction,
+                  aset_real weight, uint32_t depth, aset_kind kind) {
     aset_waiting *w = scratch->stack + (*n)++;
-    w->origin = shade_start(s, direction);
+    w->origin = shade_start_for(s, direction, policy_approximate(tracer, kind, depth));
     w->direction = direction;
     w->weight = weight;
     w->depth = (uint16_t)depth;
@@ -54,14 +54,14 @@ static void send_on(aset_scratch *scratch, uint32_t *n, const aset_tracer *trace
     bool transmits = m->transmittance > 0;
     aset_vec3 direction;
     if (transmits && shade_refracted(s, &direction)) {
-        leave(scratch, n, s, direction, from->weight * m->transmittance, depth, ASET_REFRACTED);
+        leave(scratch, n, tracer, s, direction, from->weight * m->transmittance, depth, ASET_REFRACTED);
     }
 #else
     bool transmits = false;
 #endif
 #if ASET_WITH_REFLECTION
     if (m->specular > 0 || (tracer->spd_rules && transmits)) {
-        leave(scratch, n, s, shade_reflected(s), from->weight * m->specular, depth, ASET_REFLECTED);
+        leave(scratch, n, tracer, s, shade_reflected(s), from->weight * m->specular, depth, ASET_REFLECTED);
     }
 #else
     (void)transmits;
@@ -85,9 +85,41 @@ static void add_colour(aset_colour *sum, aset_real weight, const aset_colour *co
     sum->b += weight * colour->b;
 }
 
-/* The tree behind one eye ray of unit direction; *hit: whether the eye ray itself hit something. */
+/*
+ * The layers that a ray meets, shaded, and what goes on to the background; the rays sent on leave from the layer that covers
+ * most, so that there are no more of them than of a single hit. The share of the ray that was covered.
+ */
+static aset_real shade_layers(aset_colour *sum, const aset_tracer *tracer, const aset_waiting *ray, const query_hit *layers,
+                              uint32_t n_layers, aset_scratch *scratch, uint32_t *n, aset_statistics *statistics) {
+    aset_real left = 1, most = 0;
+    shading pair[2]; /* the one that covers most so far, and the next */
+    uint32_t sender = 1;
+    for (uint32_t i = 0; i < n_layers; i++) {
+        shading *s = pair + (1 - sender);
+        shading_make(s, tracer, layers + i, ray->direction);
+        aset_colour local = shade_local(tracer, s, ray->depth, statistics);
+        add_colour(sum, ray->weight * layers[i].cover, &local);
+        left -= layers[i].cover;
+        if (layers[i].cover > most) {
+            most = layers[i].cover;
+            sender = 1 - sender;
+        }
+    }
+    left = left > 0 ? left : 0;
+    if (left > 0) {
+        add_colour(sum, ray->weight * left, &tracer->scene->background);
+    }
+    if (n_layers > 0) {
+        aset_waiting from = *ray;
+        from.weight *= 1 - left;
+        send_on(scratch, n, tracer, pair + sender, &from);
+    }
+    return 1 - left;
+}
+
+/* The tree behind one eye ray of unit direction; *cover: the share of the eye ray itself that hit something. */
 aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_scratch *scratch,
-                       aset_statistics *statistics, bool *hit) {
+                       aset_statistics *statistics, aset_real *cover) {
     aset_colour sum = {0, 0, 0};
     uint32_t n = 1;
     scratch->stack[0].origin = origin;
@@ -95,29 +127,31 @@ aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 di
     scratch->stack[0].weight = 1;
     scratch->stack[0].depth = 0;
     scratch->stack[0].kind = ASET_PRIMARY;
-    *hit = false;
+    *cover = 0;
     while (n > 0) {
         aset_waiting ray = scratch->stack[--n];
-        query_hit found;
-        bool is_hit = query_closest(&found, tracer, ray.origin, ray.direction, REAL_INFINITY,
-                                    policy_approximate(tracer, (aset_kind)ray.kind, ray.depth), statistics);
-        count_ray(statistics, ray.kind, is_hit);
-        *hit = *hit || (is_hit && ray.kind == ASET_PRIMARY);
-        if (!is_hit) {
-            add_colour(&sum, ray.weight, &tracer->scene->background);
-            continue;
-        }
-        shading s;
-        shading_make(&s, tracer, &found, ray.direction);
-        aset_colour local = shade_local(tracer, &s, ray.depth, statistics);
-        add_colour(&sum, ray.weight, &local);
-        send_on(scratch, &n, tracer, &s, &ray);
+        query_hit layers[QUERY_LAYERS_MAX];
+        uint32_t n_layers = query_layers(layers, tracer, ray.origin, ray.direction,
+                                         policy_approximate(tracer, (aset_kind)ray.kind, ray.depth), statistics);
+        count_ray(statistics, ray.kind, n_layers > 0);
+        aset_real covered = shade_layers(&sum, tracer, &ray, layers, n_layers, scratch, &n, statistics);
+        *cover += ray.kind == ASET_PRIMARY ? covered : 0;
     }
     return sum;
 }
 
+/* No ray needs the space. */
+static bool always_approximate(const aset_tracer *tracer) {
+#if ASET_WITH_APPROXIMATION
+    return tracer->approx_kinds == ASET_ALL_KINDS && tracer->approx_depth == 0 && query_can(tracer, true);
+#else
+    (void)tracer;
+    return false;
+#endif
+}
+
 aset_status trace_check(const aset_tracer *tracer, const aset_scratch *scratch) {
-    bool fine = tracer != NULL && scratch != NULL && tracer->scene != NULL && tracer->space != NULL &&
+    bool fine = tracer != NULL && scratch != NULL && (query_can(tracer, false) || always_approximate(tracer)) &&
                 scratch->stack != NULL && scratch->capacity >= tracer_depth(tracer);
     return fine ? ASET_OK : ASET_ERR_ARGUMENT;
 }
@@ -125,7 +159,7 @@ aset_status trace_check(const aset_tracer *tracer, const aset_scratch *scratch) 
 aset_status aset_ray_colour(aset_colour *colour, const aset_tracer *tracer, const aset_ray *ray, aset_scratch *scratch,
                             aset_statistics *statistics) {
     aset_statistics ignored;
-    bool hit;
+    aset_real cover;
     aset_status status = trace_check(tracer, scratch);
     if (status != ASET_OK || colour == NULL || ray == NULL) {
         return ASET_ERR_ARGUMENT;
@@ -135,6 +169,6 @@ aset_status aset_ray_colour(aset_colour *colour, const aset_tracer *tracer, cons
         return ASET_ERR_ARGUMENT;
     }
     memset(&ignored, 0, sizeof ignored);
-    *colour = trace_tree(tracer, ray->origin, direction, scratch, statistics != NULL ? statistics : &ignored, &hit);
+    *colour = trace_tree(tracer, ray->origin, direction, scratch, statistics != NULL ? statistics : &ignored, &cover);
     return ASET_OK;
 }

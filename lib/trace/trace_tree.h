@@ -4,9 +4,9 @@
 
 #include "aset/trace.h"
 
-/* direction: of unit length; the scratch as trace_check wants it. *hit: whether the eye ray itself hit something. */
+/* direction: of unit length; the scratch as trace_check wants it. *cover: the share of the eye ray itself that hit something. */
 aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_scratch *scratch,
-                       aset_statistics *statistics, bool *hit);
+                       aset_statistics *statistics, aset_real *cover);
 
 /* ASET_ERR_ARGUMENT unless the tracer is complete and the scratch deep enough for it. */
 aset_status trace_check(const aset_tracer *tracer, const aset_scratch *scratch);

@@ -1,0 +1,69 @@
+/*
+ * baker.h - what the two halves of the baker share: baker.c takes entities and fills bins, draft_write.c makes the words.
+ *
+ * The region, one piece of the arena's free bytes:
+ *
+ *     | points, crossings | marks | textures | bins . . . . .   <- raw facets |
+ *
+ * points and crossings hold the polygon in hand. marks: 64 bits for each block of voxels, empty blocks too. A bin gathers what
+ * faces one side of one voxel, in whole numbers only, so that the order of objects cannot matter; bins are found by hashing. When
+ * a pass has ended, the bins of its layers of blocks become raw facets, in the order of voxels and sides.
+ */
+#ifndef ASET_APPROX_BAKER_H
+#define ASET_APPROX_BAKER_H
+
+#include "approx/facet.h"
+#include "approx/texture.h"
+
+#if ASET_WITH_DRAFTS
+
+enum { PHASE_MEASURE, PHASE_FIT, PHASE_BAKE, PHASE_DONE, PHASE_FAILED };
+
+#define BIN_EMPTY UINT32_MAX
+/* Units of slopes and heights in a bin. */
+#define BIN_UNIT 1024
+
+/*
+ * What faces one side. Every sample stands for one column's middle: so a surface counts by the area that the side sees of it.
+ * 64 bits hold the sums of more samples than any source can give (2^52). parts: only where there is more than one material.
+ */
+typedef struct bin {
+    uint32_t key; /* voxel * 6 + side, or BIN_EMPTY */
+    uint32_t footprint;
+    uint64_t n, columns_u, columns_v;       /* columns: sums of 0 to 3 */
+    int64_t height, slope_u, slope_v;
+    uint64_t parts[TEXTURE_PARTS];
+} bin;
+
+#define BIN_BYTES_SINGLE offsetof(bin, parts)
+
+/* A raw facet: footprint 16, height 6, slopes 6 and 6, side 3, first of its voxel 1, texture above. */
+enum { RAW_HEIGHT = 16, RAW_SLOPE_U = 22, RAW_SLOPE_V = 28, RAW_SIDE = 34, RAW_FIRST = 37, RAW_TEXTURE = 38 };
+
+static inline bin *baker_bin(const aset_baker *baker, uint32_t slot) {
+    return (bin *)(void *)(baker->bins + (size_t)slot * baker->bin_bytes);
+}
+
+/* The slot of a key's bin, or of the empty one where it belongs. */
+static inline uint32_t baker_slot(const aset_baker *baker, uint32_t key) {
+    uint32_t slot = (uint32_t)((uint64_t)(key * 2654435769u) * baker->capacity >> 32);
+    for (;;) {
+        uint32_t there = baker_bin(baker, slot)->key;
+        if (there == key || there == BIN_EMPTY) {
+            return slot;
+        }
+        slot = slot + 1 < baker->capacity ? slot + 1 : 0;
+    }
+}
+
+/* The bins of the layers of blocks baked in this pass become raw facets, or are only counted if baker->counting. */
+void baker_harvest(aset_baker *baker);
+
+/* Makes the words at the region's start from all raw facets. ASET_ERR_NOMEM: the region has no room for both. */
+aset_status baker_write(aset_baker *baker);
+
+/* The bytes of a draft that is all in raw facets, and of the work to write it; with baker->n_counted facets if that is more. */
+size_t baker_words_bound(const aset_baker *baker, uint64_t n_facets);
+
+#endif
+#endif

@@ -1,0 +1,44 @@
+/* draft_ray.h - a ray against a draft's cells. */
+#ifndef ASET_APPROX_DRAFT_RAY_H
+#define ASET_APPROX_DRAFT_RAY_H
+
+#include "approx/facet.h"
+
+#if ASET_WITH_DRAFTS
+
+/* What a ray may meet before it is taken for covered. */
+#define DRAFT_LAYERS_MAX 4
+
+typedef struct draft_layer {
+    aset_real t;
+    aset_real cover; /* the share of the ray that ends here */
+    uint32_t facet;
+    int face; /* by side (not for a facet's plane): through which the voxel was entered, axis * 2, + 1 going down */
+} draft_layer;
+
+typedef struct draft_counts {
+    uint64_t cells, nonempty;
+} draft_counts;
+
+/*
+ * How a voxel answers. DRAFT_PLANE: the facets' planes and footprints. DRAFT_SIDE: where the ray enters it, with the normal of
+ * the facet that faces the ray most.
+ */
+typedef enum draft_mode { DRAFT_PLANE, DRAFT_SIDE } draft_mode;
+
+/*
+ * The layers that a ray of unit direction meets at 0 < t < t_max, in order; how many. Where the sum of their covers is less than
+ * 1 the rest of the ray goes on behind t_max or leaves the box.
+ */
+uint32_t draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
+                      aset_vec3 direction, aset_real t_max, draft_counts *counts);
+
+/* Whether anything stops a shadow ray: facets that face the origin, and others beyond the origin's own surroundings. */
+bool draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                  draft_counts *counts);
+
+/* How far from the surface, along its normal, rays start that are to meet the draft. */
+aset_real draft_clearance(const aset_draft *draft);
+
+#endif
+#endif

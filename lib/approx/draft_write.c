@@ -1,0 +1,373 @@
+/*
+ * draft_write.c - from bins to raw facets, and from these to the words of a draft.
+ *
+ * Surfaces and footprints are numbers that repeat: each is listed once, in ascending order, so that a facet takes the bits that
+ * their counts need, and the lists do not depend on where the facets stand. The words are made behind what they are made from,
+ * and then moved to the region's start.
+ */
+#include "approx/baker.h"
+
+#if ASET_WITH_DRAFTS
+
+#include "scene/shape.h"
+
+static uint32_t clamp_code(aset_real x, uint32_t most) {
+    return !(x > 0) ? 0 : x >= (aset_real)most ? most : (uint32_t)x;
+}
+
+static uint32_t slope_code(aset_real slope) {
+    return clamp_code(slope * SLOPE_STEPS + SLOPE_STEPS + R(0.5), 2 * SLOPE_STEPS);
+}
+
+/* The number of a texture in the baker's list: its own, a new one, or the nearest if the list is full. */
+static uint32_t texture_number(aset_baker *b, const bin *it) {
+    texture_sum sum;
+    aset_summary list; /* what the list's functions know */
+    uint32_t number;
+    if (b->single) {
+        return 0;
+    }
+    sum.n = 1;
+    for (int p = 0; p < TEXTURE_PARTS; p++) {
+        sum.parts[p] = (it->parts[p] + it->n / 2) / it->n;
+    }
+    aset_material texture = texture_average(&sum);
+    memset(&list, 0, sizeof list);
+    list.textures = b->textures;
+    list.n_textures = b->n_textures;
+    if (texture_find(&list, &texture, &number)) {
+        return number;
+    }
+    if (b->n_textures == b->texture_capacity) {
+        b->report.merged++;
+        return texture_nearest(&list, &texture);
+    }
+    b->textures[b->n_textures] = texture;
+    return b->n_textures++;
+}
+
+static uint64_t raw_facet(aset_baker *b, const bin *it, bool is_first) {
+    aset_real n = (aset_real)it->n;
+    aset_real slope_u = (aset_real)it->slope_u / n / BIN_UNIT, slope_v = (aset_real)it->slope_v / n / BIN_UNIT;
+    aset_real u = (aset_real)it->columns_u / n + R(0.5), v = (aset_real)it->columns_v / n + R(0.5);
+    aset_real height = ((aset_real)it->height / n + R(0.5)) / BIN_UNIT - slope_u * (u - 2) - slope_v * (v - 2);
+    return (uint64_t)it->footprint | (uint64_t)clamp_code((height - HEIGHT_LOW) / HEIGHT_STEP, 63) << RAW_HEIGHT |
+           (uint64_t)slope_code(slope_u) << RAW_SLOPE_U | (uint64_t)slope_code(slope_v) << RAW_SLOPE_V |
+           (uint64_t)(it->key % 6) << RAW_SIDE | (uint64_t)is_first << RAW_FIRST |
+           (uint64_t)texture_number(b, it) << RAW_TEXTURE;
+}
+
+static void harvest_voxel(aset_baker *b, uint32_t voxel) {
+    bool is_first = true;
+    b->report.voxels++;
+    for (uint32_t side = 0; side < 6; side++) {
+        const bin *it = baker_bin(b, baker_slot(b, voxel * 6 + side));
+        if (it->key == BIN_EMPTY) {
+            continue;
+        }
+        b->n_counted++;
+        if (!b->counting) {
+            b->n_raw++;
+            *(b->raw - b->n_raw) = raw_facet(b, it, is_first);
+        }
+        is_first = false;
+    }
+}
+
+void baker_harvest(aset_baker *b) {
+    uint32_t in_layer = b->blocks[0] * b->blocks[1];
+    if (b->single && b->n_materials > 0) {
+        b->textures[0] = b->only;
+        b->n_textures = 1;
+    }
+    for (uint32_t block = b->floor_layer * in_layer; block < b->ceiling_layer * in_layer; block++) {
+        uint32_t x = block % b->blocks[0] * 4, y = block / b->blocks[0] % b->blocks[1] * 4, z = block / in_layer * 4;
+        for (uint64_t left = b->marks[block]; left != 0; left &= left - 1) {
+            uint32_t bit = bits_lowest(left);
+            harvest_voxel(b, ((z + bit / 16) * b->n[1] + y + bit / 4 % 4) * b->n[0] + x + bit % 4);
+        }
+    }
+}
+
+/* ---- lists of numbers, each once, in order ---- */
+
+static void sift(uint32_t *numbers, size_t at, size_t n) {
+    uint32_t moved = numbers[at];
+    for (size_t child = 2 * at + 1; child < n; child = 2 * at + 1) {
+        child += child + 1 < n && numbers[child + 1] > numbers[child];
+        if (numbers[child] <= moved) {
+            break;
+        }
+        numbers[at] = numbers[child];
+        at = child;
+    }
+    numbers[at] = moved;
+}
+
+/* Sorts (Williams' heapsort 1964: in place, no recursion) and drops repeats. How many are left. */
+static size_t sort_unique(uint32_t *numbers, size_t n) {
+    for (size_t i = n / 2; i > 0; i--) {
+        sift(numbers, i - 1, n);
+    }
+    for (size_t end = n; end > 1; end--) {
+        uint32_t largest = numbers[0];
+        numbers[0] = numbers[end - 1];
+        numbers[end - 1] = largest;
+        sift(numbers, 0, end - 1);
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (kept == 0 || numbers[i] != numbers[kept - 1]) {
+            numbers[kept++] = numbers[i];
+        }
+    }
+    return kept;
+}
+
+static uint32_t find_number(const uint32_t *numbers, uint32_t n, uint32_t wanted) {
+    uint32_t low = 0, high = n - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (numbers[middle] < wanted) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static uint32_t surface_of(uint64_t raw) {
+    return (uint32_t)(raw >> RAW_SIDE & 7u) | (uint32_t)(raw >> RAW_SLOPE_U & 63u) << 3 |
+           (uint32_t)(raw >> RAW_SLOPE_V & 63u) << (3 + SLOPE_BITS) | (uint32_t)(raw >> RAW_TEXTURE) << SURFACE_TEXTURE_SHIFT;
+}
+
+/* ---- the words ---- */
+
+static uint32_t words_of_kept(const aset_scene *stage, uint32_t object) {
+    shape s = shape_of(stage, object);
+    uint32_t n = s.n;
+    if (s.kind == KIND_POLYGON || s.kind == KIND_PATCH) { /* without what the scene keeps before the points */
+        n -= s.n > (s.kind == KIND_PATCH ? 18u : 9u) ? 3 : 0;
+    }
+    return KEPT_HEAD_WORDS + n;
+}
+
+static uint64_t count_blocks(const aset_baker *b) {
+    uint64_t n = 0;
+    for (uint32_t i = 0; i < b->blocks[0] * b->blocks[1] * b->blocks[2]; i++) {
+        n += b->marks[i] != 0;
+    }
+    return n;
+}
+
+static uint64_t count_words(const aset_baker *b, uint64_t n_facets, uint64_t n_surfaces, uint64_t n_footprints) {
+    uint64_t n_all = (uint64_t)b->blocks[0] * b->blocks[1] * b->blocks[2], kept = 0;
+    unsigned width = HEIGHT_BITS + (n_surfaces > 1 ? bits_width((uint32_t)n_surfaces - 1) : 1) +
+                     (n_footprints > 1 ? bits_width((uint32_t)n_footprints - 1) : 1);
+    for (uint32_t i = 0; i < b->stage.counts.objects; i++) {
+        kept += words_of_kept(&b->stage, i);
+    }
+    return WORDS_HEADER + 2 * ((n_all + 31) / 32) + 3 * count_blocks(b) + n_facets / 32 + 1 + (n_facets * width + 31) / 32 + 2 +
+           n_surfaces + (n_footprints + 1) / 2 + (uint64_t)b->n_textures * TEXTURE_WORDS +
+           (uint64_t)b->stage.counts.lights * LIGHT_WORDS + kept;
+}
+
+size_t baker_words_bound(const aset_baker *b, uint64_t n_facets) {
+    uint64_t words = count_words(b, n_facets, n_facets, n_facets < 65535 ? n_facets : 65535);
+    return (size_t)(b->bins - b->region) + (size_t)(words * sizeof(uint32_t)) + (size_t)n_facets * (sizeof(uint32_t) + sizeof(uint64_t)) +
+           65536;
+}
+
+static void write_vec(uint32_t *w, aset_vec3 x) {
+    w[0] = word_of_float(x.x);
+    w[1] = word_of_float(x.y);
+    w[2] = word_of_float(x.z);
+}
+
+static void write_material(uint32_t *w, const aset_material *m) {
+    write_vec(w, vec(m->fill.r, m->fill.g, m->fill.b));
+    write_vec(w + 3, vec(m->diffuse, m->specular, m->shine));
+#if ASET_WITH_REFRACTION
+    w[6] = word_of_float(m->transmittance);
+    w[7] = word_of_float(m->refraction_index);
+#else
+    w[6] = w[7] = word_of_float(0);
+#endif
+}
+
+static void write_header(uint32_t *words, const aset_baker *b, uint64_t n_words, uint32_t n_surfaces, uint32_t n_footprints) {
+    const aset_view *view = &b->stage.view;
+    memset(words, 0, (size_t)n_words * sizeof *words);
+    words[WORD_MAGIC] = FACET_MAGIC;
+    words[WORD_VERSION] = FACET_VERSION;
+    words[WORD_N_WORDS] = (uint32_t)n_words;
+    for (int a = 0; a < 3; a++) {
+        words[WORD_N + a] = b->n[a];
+        words[WORD_LOW + a] = word_of_float(b->origin[a]);
+        words[WORD_SIZE + a] = word_of_float(b->size[a]);
+    }
+    words[WORD_BLOCKS] = (uint32_t)count_blocks(b);
+    words[WORD_FACETS] = b->n_raw;
+    words[WORD_SURFACES] = n_surfaces;
+    words[WORD_FOOTPRINTS] = n_footprints;
+    words[WORD_TEXTURES] = b->n_textures;
+    words[WORD_LIGHTS] = b->stage.counts.lights;
+    words[WORD_KEPT] = b->stage.counts.objects;
+    for (uint32_t i = 0; i < b->stage.counts.objects; i++) {
+        words[WORD_KEPT_WORDS] += words_of_kept(&b->stage, i);
+    }
+    words[WORD_HAS_VIEW] = b->stage.has_view;
+    write_vec(words + WORD_BACKGROUND, vec(b->stage.background.r, b->stage.background.g, b->stage.background.b));
+    if (b->stage.has_view) {
+        write_vec(words + WORD_VIEW, view->from);
+        write_vec(words + WORD_VIEW + 3, view->at);
+        write_vec(words + WORD_VIEW + 6, view->up);
+        words[WORD_VIEW + 9] = word_of_float(view->angle_deg);
+        words[WORD_VIEW + 10] = word_of_float(view->height);
+        words[WORD_VIEW + 11] = view->width_px;
+        words[WORD_VIEW + 12] = view->height_px;
+    }
+}
+
+/* The sections are written through the places that draft_bind has found for them. */
+static uint32_t *section(const uint32_t *at, uint32_t *words, const aset_draft *draft) {
+    return words + (at - draft->words);
+}
+
+static void write_blocks(uint32_t *words, const aset_draft *d, const aset_baker *b) {
+    uint32_t *map = section(d->map, words, d), *rank = section(d->rank, words, d), *marks = section(d->marks, words, d);
+    uint32_t *first = section(d->first, words, d), n = 0, facet_number = 0;
+    for (uint32_t i = 0; i < b->blocks[0] * b->blocks[1] * b->blocks[2]; i++) {
+        if (i % 32 == 0) {
+            rank[i / 32] = n;
+        }
+        if (b->marks[i] == 0) {
+            continue;
+        }
+        map[i / 32] |= 1u << i % 32;
+        marks[2 * n] = (uint32_t)b->marks[i];
+        marks[2 * n + 1] = (uint32_t)(b->marks[i] >> 32);
+        first[n++] = facet_number;
+        for (unsigned voxels = bits_count(b->marks[i]); voxels > 0; voxels--) {
+            do {
+                facet_number++;
+            } while (facet_number < b->n_raw && (*(b->raw - 1 - facet_number) >> RAW_FIRST & 1u) == 0);
+        }
+    }
+}
+
+static void write_facets(uint32_t *words, const aset_draft *d, const aset_baker *b, const uint32_t *surfaces,
+                         const uint32_t *prints) {
+    uint32_t *starts = section(d->starts, words, d), *facets = section(d->facets, words, d);
+    uint32_t *footprints = section(d->footprints, words, d);
+    memcpy(section(d->surfaces, words, d), surfaces, d->n_surfaces * sizeof *surfaces);
+    for (uint32_t i = 0; i < d->n_footprints; i++) {
+        footprints[i / 2] |= prints[i] << i % 2 * 16;
+    }
+    for (uint32_t i = 0; i < b->n_raw; i++) {
+        uint64_t raw = *(b->raw - 1 - i), record = raw >> RAW_HEIGHT & 63u;
+        record = record << d->footprint_width | find_number(prints, d->n_footprints, (uint32_t)(raw & 0xffffu));
+        record = record << d->surface_width | find_number(surfaces, d->n_surfaces, surface_of(raw));
+        words_put(facets, d->width, i, record);
+        starts[i / 32] |= (uint32_t)(raw >> RAW_FIRST & 1u) << i % 32;
+    }
+    starts[b->n_raw / 32] |= 1u << b->n_raw % 32;
+}
+
+static void write_kept(uint32_t *w, const aset_scene *stage) {
+    for (uint32_t i = 0; i < stage->counts.objects; i++) {
+        shape s = shape_of(stage, i);
+        uint32_t n = words_of_kept(stage, i) - KEPT_HEAD_WORDS;
+        bool is_outline = s.kind == KIND_POLYGON || s.kind == KIND_PATCH;
+        w[0] = s.kind | (is_outline ? n / (s.kind == KIND_PATCH ? 6 : 3) : 0) << 8 | (s.material->one_sided ? 1u : 0u) << 31;
+        write_material(w + 1, s.material);
+        for (uint32_t k = 0; k < n; k++) {
+            w[KEPT_HEAD_WORDS + k] = word_of_float(s.at[s.n - n + k]);
+        }
+        w += KEPT_HEAD_WORDS + n;
+    }
+}
+
+static void write_stage(uint32_t *words, const aset_draft *d, const aset_baker *b) {
+    uint32_t *w = section(d->textures, words, d);
+    for (uint32_t i = 0; i < b->n_textures; i++, w += TEXTURE_WORDS) {
+        write_material(w, b->textures + i);
+    }
+    for (uint32_t i = 0; i < b->stage.counts.lights; i++, w += LIGHT_WORDS) {
+        const aset_light *light = b->stage.lights + i;
+        write_vec(w, light->position);
+        if (light->has_colour) {
+            write_vec(w + 3, vec(light->colour.r, light->colour.g, light->colour.b));
+        }
+        w[6] = (light->has_colour ? LIGHT_HAS_COLOUR : 0) | (light->directional ? LIGHT_DIRECTIONAL : 0);
+    }
+    write_kept(w, &b->stage);
+}
+
+/* All surfaces, or all footprints, each once; *n of at most room. False: no room. */
+static bool list_numbers(const aset_baker *b, bool prints, uint32_t *list, size_t room, uint32_t *n) {
+    size_t filled = 0;
+    for (uint32_t i = 0; i < b->n_raw; i++) {
+        if (filled == room) {
+            filled = sort_unique(list, filled);
+            if (filled > room - room / 4) {
+                return false;
+            }
+        }
+        uint64_t raw = *(b->raw - 1 - i);
+        list[filled++] = prints ? (uint32_t)(raw & 0xffffu) : surface_of(raw);
+    }
+    *n = (uint32_t)sort_unique(list, filled);
+    return true;
+}
+
+aset_status baker_write(aset_baker *b) {
+    aset_draft draft;
+    uint32_t *at = (uint32_t *)(void *)b->bins, *end = (uint32_t *)(void *)(b->raw - b->n_raw);
+    uint32_t *surfaces = at, *prints, n_surfaces = 0, n_prints = 0;
+    if (!list_numbers(b, false, surfaces, (size_t)(end - at), &n_surfaces)) {
+        return ASET_ERR_NOMEM;
+    }
+    prints = surfaces + n_surfaces;
+    if (!list_numbers(b, true, prints, (size_t)(end - prints), &n_prints)) {
+        return ASET_ERR_NOMEM;
+    }
+    uint64_t n_words = count_words(b, b->n_raw, n_surfaces, n_prints);
+    uint32_t *words = prints + n_prints;
+    if (n_words > (uint64_t)(end - words)) {
+        return ASET_ERR_NOMEM;
+    }
+    write_header(words, b, n_words, n_surfaces, n_prints);
+    (void)draft_bind(&draft, words, (size_t)n_words);
+    write_blocks(words, &draft, b);
+    write_facets(words, &draft, b, surfaces, prints);
+    write_stage(words, &draft, b);
+    words[WORD_CHECK] = draft_checksum(words, (size_t)n_words);
+    memmove(b->region, words, (size_t)n_words * sizeof *words);
+    b->n_words = (size_t)n_words;
+    return ASET_OK;
+}
+
+/* The region goes back, and its first bytes, where the words are, are taken again. */
+static uint32_t *take_words(aset_baker *b, size_t n_words) {
+    aset_arena *arena = b->arena;
+    arena->used -= b->region_bytes;
+    arena->used_by[ASET_CATEGORY_SCRATCH] -= b->region_bytes;
+    return aset_arena_alloc(arena, n_words * sizeof(uint32_t), ASET_CATEGORY_CELLS);
+}
+
+aset_status aset_baker_finish(aset_draft *draft, aset_baker *baker) {
+    if (draft == NULL || baker == NULL || baker->phase != PHASE_DONE) {
+        return ASET_ERR_ARGUMENT;
+    }
+    memset(draft, 0, sizeof *draft);
+    (void)draft_bind(draft, take_words(baker, baker->n_words), baker->n_words);
+    draft->stage = baker->stage;
+    baker->phase = PHASE_FAILED;
+    baker->report.facets = draft->n_facets;
+    baker->report.textures = draft->n_textures;
+    return ASET_OK;
+}
+
+#endif
