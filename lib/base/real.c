@@ -11,15 +11,27 @@
 
 /* The logarithm to base 2 of a normal x > 0. Halving and doubling are exact, so no bit pattern is looked at. */
 static aset_real log2_of(aset_real x) {
+    const aset_real least = R(0.70710678);
     int exponent = 0;
-    while (x < R(0.70710678)) {
-        if (x < R(1.0 / 65536)) {
-            x *= R(65536);
-            exponent -= 16;
-        } else {
-            x *= 2;
-            exponent -= 1;
-        }
+    while (x < least / 32768) {
+        x *= R(65536);
+        exponent -= 16;
+    }
+    if (x < least / 128) {
+        x *= 256;
+        exponent -= 8;
+    }
+    if (x < least / 8) {
+        x *= 16;
+        exponent -= 4;
+    }
+    if (x < least / 2) {
+        x *= 4;
+        exponent -= 2;
+    }
+    if (x < least) {
+        x *= 2;
+        exponent -= 1;
     }
     aset_real s = (x - 1) / (x + 1), s2 = s * s;
     aset_real series =
@@ -41,10 +53,7 @@ static aset_real exp2_of(aset_real x) {
     for (; whole <= -16; whole += 16) {
         value *= R(1.0 / 65536);
     }
-    for (; whole < 0; whole++) {
-        value *= R(0.5);
-    }
-    return value;
+    return value / (aset_real)(1 << -whole);
 }
 
 aset_real real_power(aset_real base, aset_real exponent) {

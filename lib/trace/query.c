@@ -104,6 +104,9 @@ static bool trapped(const aset_tracer *tracer, aset_real t) {
     if (!(tracer->curtail > 0)) {
         return false;
     }
+    if (t > tracer->curtail * R(1.01) * (w[0] + w[1] + w[2])) { /* behind all three sides one after another: most hits */
+        return tracer->curtail_more;
+    }
     aset_real bound = tracer->curtail * vec_length(vec(w[0], w[1], w[2]));
     return tracer->curtail_more ? t > bound : t < bound;
 }
@@ -118,7 +121,7 @@ static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const pro
     q.found = false;
     tracer->space->method->go(tracer->space, ray, &q.walk);
     statistics->cells_visited += q.walk.cells;
-    statistics->nonempty_visited += q.walk.nonempty;
+    statistics->nonempty_visited += (uint32_t)q.walk.nonempty; /* 32 bits: as a pair, both would wait for their stores */
     if (!q.found || !(q.t + moved < t_max)) {
         return false;
     }
@@ -131,28 +134,76 @@ static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const pro
 
 #endif
 
+/* The larger of an origin's distances to both sides of a box, on one axis. */
+static inline aset_real farther(aset_real low, aset_real high, aset_real origin) {
+    return real_max(high - origin, origin - low);
+}
+
+/* Narrows the ray's stay in a box by one axis, as probe_box does. False: it misses. */
+static inline bool narrow(const probe *ray, int a, aset_real low, aset_real high, aset_real *t_in, aset_real *t_out) {
+    aset_real origin = ray->origin[a], inverse = ray->inverse[a];
+    if (!ray->moves[a]) {
+        return origin >= low && origin <= high;
+    }
+    bool up = ray->direction[a] > 0;
+    *t_in = real_max(((up ? low : high) - origin) * inverse, *t_in);
+    *t_out = real_min(((up ? high : low) - origin) * inverse, *t_out);
+    return true;
+}
+
 /*
  * How far the ray is from the scene's box: t at which it enters, 0 if it misses or has entered. The box is grown by more than any
  * object's, and by the rounding of its sides' t from here: a ray that misses it is refused by the clamp of every object too.
  */
 static aset_real distance_to(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real margin) {
-    aset_vec3 origin = probe_origin(ray);
-    aset_real away = real_max(vec_largest(vec_sub(low, origin)), vec_largest(vec_sub(high, origin)));
-    aset_real grown = 4 * margin + 4 * REAL_UNIT * away, t_in, t_out;
-    aset_vec3 m = vec(grown, grown, grown);
-    return probe_box(ray, vec_sub(low, m), vec_add(high, m), &t_in, &t_out) && t_in > 0 ? t_in : 0;
+    const aset_real *o = ray->origin;
+    aset_real t_in = -REAL_INFINITY, t_out = REAL_INFINITY;
+    aset_real away = real_max(farther(low.x, high.x, o[0]), farther(low.y, high.y, o[1]));
+    away = real_max(away, farther(low.z, high.z, o[2]));
+    aset_real grown = 4 * margin + 4 * REAL_UNIT * away;
+    bool meets = narrow(ray, 0, low.x - grown, high.x + grown, &t_in, &t_out) &&
+                 narrow(ray, 1, low.y - grown, high.y + grown, &t_in, &t_out) &&
+                 narrow(ray, 2, low.z - grown, high.z + grown, &t_in, &t_out);
+    return meets && t_in <= t_out && t_in > 0 ? t_in : 0;
 }
 
-aset_real query_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
-    aset_vec3 low, high;
-    aset_real moved = 0;
-    *ray = probe_make(origin, direction);
-    if (!aset_scene_bounds(scene, &low, &high)) {
+#if ASET_WITH_APPROXIMATION
+
+/* Below this a component of a unit direction moves a ray by less than any margin: as probe_make's. */
+#define STILL R(8.7e-19)
+
+static inline void walk_axis(probe *ray, int a, aset_real origin, aset_real direction) {
+    ray->moves[a] = real_abs(direction) > STILL;
+    ray->inverse[a] = ray->moves[a] ? 1 / direction : 0;
+    ray->origin[a] = origin;
+    ray->direction[a] = direction;
+}
+
+/* probe_make without what only polygons want. */
+static void walk_probe(probe *ray, aset_vec3 origin, aset_vec3 direction) {
+    walk_axis(ray, 0, origin.x, direction.x);
+    walk_axis(ray, 1, origin.y, direction.y);
+    walk_axis(ray, 2, origin.z, direction.z);
+}
+
+#endif
+
+/* Is the origin in less than the box of distance_to? Then that is 0: so with most rays that a surface sends on. */
+static inline bool has_entered(const aset_scene *scene, aset_vec3 origin) {
+    aset_vec3 low = scene->low, high = scene->high;
+    aset_real grown = 4 * scene->margin;
+    return origin.x >= low.x - grown && origin.x <= high.x + grown && origin.y >= low.y - grown &&
+           origin.y <= high.y + grown && origin.z >= low.z - grown && origin.z <= high.z + grown;
+}
+
+/* Moves a ray from outside near the scene. By how much. */
+static aset_real approach(probe *ray, const aset_scene *scene) {
+    if (scene->counts.objects == 0) {
         return 0;
     }
-    aset_real near = NEAR * vec_largest(vec_sub(high, low));
+    aset_real moved = 0, near = NEAR * vec_largest(vec_sub(scene->high, scene->low));
     for (int i = 0; i < APPROACHES; i++) { /* from very far away the first move ends up somewhere near: so again */
-        aset_real step = distance_to(ray, low, high, scene->margin) - near;
+        aset_real step = distance_to(ray, scene->low, scene->high, scene->margin) - near;
         if (!(step > 0)) {
             break;
         }
@@ -162,6 +213,11 @@ aset_real query_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, ase
         moved += step;
     }
     return moved;
+}
+
+aset_real query_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
+    *ray = probe_make(origin, direction);
+    return has_entered(scene, origin) ? 0 : approach(ray, scene);
 }
 
 #if ASET_WITH_DRAFTS
@@ -274,13 +330,14 @@ bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, 
         return n > 0;
     }
 #endif
-    aset_real moved = query_ready(&ray, tracer->scene, origin, direction);
-    hit->near = probe_origin(&ray);
     hit->curtailed = false;
     hit->cover = 1;
     hit->scene = NULL;
 #if ASET_WITH_APPROXIMATION
     if (approximate) {
+        walk_probe(&ray, origin, direction);
+        aset_real moved = has_entered(tracer->scene, origin) ? 0 : approach(&ray, tracer->scene);
+        hit->near = probe_origin(&ray);
         bool found = approximate_hit(hit, tracer, &ray, moved, t_max, statistics);
         if (!found) {
             return false;
@@ -294,6 +351,8 @@ bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, 
     }
 #endif
     (void)approximate;
+    aset_real moved = query_ready(&ray, tracer->scene, origin, direction);
+    hit->near = probe_origin(&ray);
     exact_query q;
     bool found = exact(&q, tracer, &ray, moved, t_max, false, statistics);
     hit->t_near = q.best;

@@ -43,10 +43,10 @@ static void leave(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer,
 
 /* The rays that the hit sends on. Under the SPD's rules they are sent even where their weight is 0. */
 static void send_on(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer, const shading *s,
-                    const aset_waiting *from) {
+                    uint32_t depth, aset_real weight) {
 #if ASET_WITH_REFLECTION || ASET_WITH_REFRACTION
     const aset_material *m = s->hit.material;
-    uint32_t depth = from->depth + 1u;
+    depth++;
     if (depth >= tracer_depth(tracer)) {
         return;
     }
@@ -54,24 +54,24 @@ static void send_on(aset_scratch *scratch, uint32_t *n, const aset_tracer *trace
     bool transmits = m->transmittance > 0;
     aset_vec3 direction;
     if (transmits && shade_refracted(s, &direction)) {
-        leave(scratch, n, tracer, s, direction, from->weight * m->transmittance, depth, ASET_REFRACTED);
+        leave(scratch, n, tracer, s, direction, weight * m->transmittance, depth, ASET_REFRACTED);
     }
 #else
     bool transmits = false;
 #endif
 #if ASET_WITH_REFLECTION
     if (m->specular > 0 || (tracer->spd_rules && transmits)) {
-        leave(scratch, n, tracer, s, shade_reflected(s), from->weight * m->specular, depth, ASET_REFLECTED);
+        leave(scratch, n, tracer, s, shade_reflected(s), weight * m->specular, depth, ASET_REFLECTED);
     }
 #else
     (void)transmits;
 #endif
 #else
-    (void)scratch, (void)n, (void)tracer, (void)s, (void)from;
+    (void)scratch, (void)n, (void)tracer, (void)s, (void)depth, (void)weight;
 #endif
 }
 
-static void count_ray(aset_statistics *statistics, uint16_t kind, bool hit) {
+static void count_ray(aset_statistics *statistics, aset_kind kind, bool hit) {
     statistics->primary += kind == ASET_PRIMARY;
     statistics->primary_hit += kind == ASET_PRIMARY && hit;
     statistics->reflected += kind == ASET_REFLECTED;
@@ -86,19 +86,20 @@ static void add_colour(aset_colour *sum, aset_real weight, const aset_colour *co
 }
 
 /*
- * The layers that a ray meets, shaded, and what goes on to the background; the rays sent on leave from the layer that covers
- * most, so that there are no more of them than of a single hit. The share of the ray that was covered.
+ * The layers of a draft that a ray meets, shaded; the rays sent on leave from the layer that covers most, so that there are no
+ * more of them than of a single hit. What of the ray is left uncovered.
  */
-static aset_real shade_layers(aset_colour *sum, const aset_tracer *tracer, const aset_waiting *ray, const query_hit *layers,
-                              uint32_t n_layers, aset_scratch *scratch, uint32_t *n, aset_statistics *statistics) {
+static aset_real shade_layers(aset_colour *sum, const aset_tracer *tracer, aset_vec3 direction, uint32_t depth,
+                              aset_real weight, const query_hit *layers, uint32_t n_layers, aset_scratch *scratch,
+                              uint32_t *n, aset_statistics *statistics) {
     aset_real left = 1, most = 0;
     shading pair[2]; /* the one that covers most so far, and the next */
     uint32_t sender = 1;
     for (uint32_t i = 0; i < n_layers; i++) {
         shading *s = pair + (1 - sender);
-        shading_make(s, tracer, layers + i, ray->direction);
-        aset_colour local = shade_local(tracer, s, ray->depth, statistics);
-        add_colour(sum, ray->weight * layers[i].cover, &local);
+        shading_make(s, tracer, layers + i, direction);
+        aset_colour local = shade_local(tracer, s, depth, statistics);
+        add_colour(sum, weight * layers[i].cover, &local);
         left -= layers[i].cover;
         if (layers[i].cover > most) {
             most = layers[i].cover;
@@ -106,15 +107,8 @@ static aset_real shade_layers(aset_colour *sum, const aset_tracer *tracer, const
         }
     }
     left = left > 0 ? left : 0;
-    if (left > 0) {
-        add_colour(sum, ray->weight * left, &tracer->scene->background);
-    }
-    if (n_layers > 0) {
-        aset_waiting from = *ray;
-        from.weight *= 1 - left;
-        send_on(scratch, n, tracer, pair + sender, &from);
-    }
-    return 1 - left;
+    send_on(scratch, n, tracer, pair + sender, depth, weight * (1 - left));
+    return left;
 }
 
 /* The tree behind one eye ray of unit direction; *cover: the share of the eye ray itself that hit something. */
@@ -129,13 +123,29 @@ aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 di
     scratch->stack[0].kind = ASET_PRIMARY;
     *cover = 0;
     while (n > 0) {
-        aset_waiting ray = scratch->stack[--n];
+        const aset_waiting *ray = scratch->stack + --n; /* gone when the next ones are left */
+        aset_vec3 direction_of = ray->direction;
+        aset_real weight = ray->weight, left = 1;
+        uint32_t depth = ray->depth;
+        aset_kind kind = (aset_kind)ray->kind;
         query_hit layers[QUERY_LAYERS_MAX];
-        uint32_t n_layers = query_layers(layers, tracer, ray.origin, ray.direction,
-                                         policy_approximate(tracer, (aset_kind)ray.kind, ray.depth), statistics);
-        count_ray(statistics, ray.kind, n_layers > 0);
-        aset_real covered = shade_layers(&sum, tracer, &ray, layers, n_layers, scratch, &n, statistics);
-        *cover += ray.kind == ASET_PRIMARY ? covered : 0;
+        uint32_t n_layers = query_layers(layers, tracer, ray->origin, direction_of, policy_approximate(tracer, kind, depth),
+                                         statistics);
+        count_ray(statistics, kind, n_layers > 0);
+        if (n_layers == 1 && layers[0].cover == 1) {
+            shading s;
+            shading_make(&s, tracer, layers, direction_of);
+            aset_colour local = shade_local(tracer, &s, depth, statistics);
+            add_colour(&sum, weight, &local);
+            send_on(scratch, &n, tracer, &s, depth, weight);
+            left = 0;
+        } else if (n_layers > 0) {
+            left = shade_layers(&sum, tracer, direction_of, depth, weight, layers, n_layers, scratch, &n, statistics);
+        }
+        if (left > 0) {
+            add_colour(&sum, weight * left, &tracer->scene->background);
+        }
+        *cover += kind == ASET_PRIMARY ? 1 - left : 0;
     }
     return sum;
 }
