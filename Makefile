@@ -98,7 +98,7 @@ $(BUILD)/tests/bench: tests/bench.c tests/bench_common.h $(ARCHIVES)
 # Embree 3, if a small program with it compiles and links; else bench_peers says that it is absent and ends well.
 EMBREE = $(shell mkdir -p $(BUILD)/tests && echo 'int main(void) { return rtcNewDevice(0) == 0; }' | \
   $(CC) -include embree3/rtcore.h -x c - -o $(BUILD)/tests/embree-probe -lembree3 2>/dev/null && echo yes)
-$(BUILD)/tests/bench_peers: tests/bench_peers.c tests/bench_common.h $(ARCHIVES)
+$(BUILD)/tests/bench_peers $(BUILD)/tests/bench_drafts: $(BUILD)/tests/%: tests/%.c tests/bench_common.h $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)if [ "$(EMBREE)" = yes ]; then with="-DBENCH_EMBREE=1" lib="-lembree3"; fi; \
@@ -166,6 +166,9 @@ bench-instructions: $(BUILD)/tests/bench ## the same in instructions a ray (need
 bench-peers: $(BUILD)/tests/bench_peers ## ours beside Embree 3, if it is installed: build and picture, as ratios
 	@$(BUILD)/tests/bench_peers $(ARGS)
 
+bench-drafts: $(BUILD)/tests/bench_drafts ## from triangles to a picture: a draft beside Embree 3, at 262,144 and 4,194,304 triangles
+	@$(BUILD)/tests/bench_drafts $(ARGS)
+
 plan-check: $(BUILD)/aset ## a plan's expectations against what happens, on the seven SPD scenes and three odd ones (minutes)
 	bash tests/plan-check.sh $(BUILD)/aset $(BUILD)/plan-check
 
@@ -212,5 +215,5 @@ help: ## show this text
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
 .PHONY: all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
-  hp9000 methods method-costs bench bench-instructions bench-peers bench-walk plan-check tables prices pictures deps install clean help
+  hp9000 methods method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

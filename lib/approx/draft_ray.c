@@ -1,7 +1,7 @@
 /*
  * draft_ray.c - the way of a ray through a draft: blocks of 4 x 4 x 4 voxels, in those that are not empty the voxels, in those
- * that are marked the facets. Two nested walks of the same kind (Amanatides and Woo 1987), each crossing computed from its
- * slice's number; of an empty block nothing but its bit in the map is looked at. A walk ends after as many steps as there are
+ * that are marked the facets. Two nested walks of the same kind (Amanatides and Woo 1987), the crossings
+ * of an axis t apart by a constant; of an empty block nothing but its bit in the map is looked at. A walk ends after as many steps as there are
  * slices to cross.
  *
  * Everything is in columns here (facet.h), t excepted, which stays in the scene's lengths: the ray is o + t d with o and d
@@ -66,26 +66,27 @@ static aset_real soft_cover(uint32_t footprint, aset_real u, aset_real v) {
     return cover < COVER_LEAST ? 0 : cover > COVER_MOST ? 1 : cover;
 }
 
-/* The ray against one facet of the voxel whose corner lies at base. */
-static bool meet(const way *w, const aset_real base[3], uint32_t number, aset_real t_min, meeting *m) {
-    static const int next[3] = {1, 2, 0};
-    facet f = facet_read(w->draft, number);
-    int a = f.axis, u = next[a], v = next[u];
-    aset_real qa = w->o[a] - base[a], qu = w->o[u] - base[u], qv = w->o[v] - base[v];
-    aset_real rate = w->d[a] - f.slope_u * w->d[u] - f.slope_v * w->d[v];
-    aset_real t = (f.height + f.slope_u * (qu - 2) + f.slope_v * (qv - 2) - qa) / rate;
-    if (!(t > t_min && t < w->t_max)) { /* rate may be 0: t is infinite then, or not a number */
+/* The ray against one facet of the voxel that it sees from q, its origin from the voxel's corner. */
+static inline bool meet(const way *w, const aset_real q[3], uint32_t number, aset_real t_min, meeting *m) {
+    static const unsigned next[3] = {1, 2, 0};
+    uint64_t record = facet_record(w->draft, number);
+    uint32_t surface = facet_surface(w->draft, record);
+    aset_real height = facet_height(w->draft, record);
+    aset_real slope_u = surface_slope_u(surface), slope_v = surface_slope_v(surface);
+    unsigned a = surface_axis(surface), u = next[a], v = next[u];
+    aset_real rate = w->d[a] - slope_u * w->d[u] - slope_v * w->d[v];
+    aset_real t = (height + slope_u * (q[u] - 2) + slope_v * (q[v] - 2) - q[a]) / rate;
+    aset_real ha = q[a] + t * w->d[a], hu = q[u] + t * w->d[u], hv = q[v] + t * w->d[v];
+    bool in_voxel = (hu >= -BEYOND_SIDES) & (hu <= 4 + BEYOND_SIDES) & (hv >= -BEYOND_SIDES) & (hv <= 4 + BEYOND_SIDES) &
+                    (ha >= -BEYOND_HEIGHT) & (ha <= 4 + BEYOND_HEIGHT) & (t > t_min) & (t < w->t_max);
+    if (!in_voxel) { /* rate may be 0: t is infinite then, or not a number, and nothing holds */
         return false;
     }
-    aset_real ha = qa + t * w->d[a], hu = qu + t * w->d[u], hv = qv + t * w->d[v];
-    if (!(hu >= -BEYOND_SIDES && hu <= 4 + BEYOND_SIDES && hv >= -BEYOND_SIDES && hv <= 4 + BEYOND_SIDES &&
-          ha >= -BEYOND_HEIGHT && ha <= 4 + BEYOND_HEIGHT)) {
-        return false;
-    }
+    uint32_t footprint = facet_footprint(w->draft, record);
     m->t = t;
     m->facet = number;
-    m->away = (rate > 0) != f.down;
-    m->cover = w->any ? bit_at(f.footprint, (int)hu, (int)hv) : soft_cover(f.footprint, hu, hv);
+    m->away = (rate > 0) != surface_down(surface);
+    m->cover = w->any ? bit_at(footprint, (int)hu, (int)hv) : soft_cover(footprint, hu, hv);
     return m->cover > 0;
 }
 
@@ -105,11 +106,12 @@ static void add_layer(way *w, const meeting *m, int face) {
 /* The facets of one voxel, first to end, nearest first. True: nothing behind matters any more. */
 static bool visit_planes(way *w, const aset_real base[3], uint32_t first, uint32_t end) {
     meeting found[6];
+    aset_real q[3] = {w->o[0] - base[0], w->o[1] - base[1], w->o[2] - base[2]};
     uint32_t n = 0;
     aset_real t_min = w->n > 0 ? w->layers[w->n - 1].t : 0;
     for (uint32_t i = first; i < end; i++) {
         meeting m;
-        if (!meet(w, base, i, t_min, &m)) {
+        if (!meet(w, q, i, t_min, &m)) {
             continue;
         }
         if (w->any) {
@@ -179,58 +181,84 @@ static void find_facets(const aset_draft *draft, uint32_t block, unsigned k, uin
     *end = word * 32 + bits_lowest(bits);
 }
 
-/* One of the two nested walks: cells of a width in columns, in a box of count cells whose corner is at corner columns. */
-typedef struct grid_walk {
-    int at[3], end[3];
-    aset_real next[3];
-} grid_walk;
+/*
+ * One of the two nested walks, in a box of cells. For each axis: t of the next crossing, how much t grows from one to the next,
+ * how many cells are left before the box's end, what a crossing adds to the cell's number. Fields and no arrays, so that they
+ * can live in registers.
+ */
+typedef struct lane {
+    aset_real next, delta;
+    int32_t left, add;
+} lane;
 
-static void walk_start(grid_walk *g, const way *w, aset_real t, const aset_real corner[3], aset_real width, const int count[3]) {
-    for (int a = 0; a < 3; a++) {
-        aset_real x = (w->o[a] + t * w->d[a] - corner[a]) / width;
-        int k = !(x > 0) ? 0 : x >= (aset_real)count[a] ? count[a] - 1 : (int)x;
-        g->at[a] = k;
-        g->end[a] = w->step[a] > 0 ? count[a] : -1;
-        g->next[a] = w->inverse[a] != 0 ? (corner[a] + (aset_real)(k + (w->step[a] > 0)) * width - w->o[a]) * w->inverse[a]
-                                        : REAL_INFINITY;
-    }
+typedef struct lanes {
+    lane x, y, z;
+    int32_t cell;
+} lanes;
+
+/* Axis a of a box of count cells whose corner is at corner columns; stride: of the cells' numbers. */
+static inline lane lane_start(int32_t *cell, const way *w, int a, aset_real t, aset_real corner, aset_real width,
+                              aset_real per_width, int32_t count, int32_t stride) {
+    aset_real x = (w->o[a] + t * w->d[a] - corner) * per_width, last = (aset_real)(count - 1);
+    int32_t k = x > 0 ? (int32_t)(x < last ? x : last) : 0;
+    bool up = w->step[a] > 0;
+    lane l;
+    *cell += k * stride;
+    l.left = up ? count - 1 - k : k;
+    l.add = up ? stride : -stride;
+    l.next = w->inverse[a] != 0 ? (corner + (aset_real)(k + up) * width - w->o[a]) * w->inverse[a] : REAL_INFINITY;
+    l.delta = width * real_abs(w->inverse[a]);
+    return l;
 }
 
-/* Crosses into the next cell; the axis, or -1 if the ray leaves the box or the interesting part of the ray. */
-static inline int walk_step(grid_walk *g, const way *w, aset_real *t, const aset_real corner[3], aset_real width) {
-    int a = g->next[0] <= g->next[1] ? (g->next[0] <= g->next[2] ? 0 : 2) : (g->next[1] <= g->next[2] ? 1 : 2);
-    *t = g->next[a];
-    g->at[a] += w->step[a];
-    if (g->at[a] == g->end[a] || !(*t < w->t_max)) {
-        return -1;
-    }
-    g->next[a] = (corner[a] + (aset_real)(g->at[a] + (w->step[a] > 0)) * width - w->o[a]) * w->inverse[a];
-    return a;
+/* False: out of the box. */
+static inline bool lane_cross(lane *l, int32_t *cell, aset_real *t) {
+    *t = l->next;
+    l->next += l->delta;
+    *cell += l->add;
+    return --l->left >= 0;
 }
 
-static bool walk_block(way *w, uint32_t block, aset_real t, int axis, const int at[3]) {
-    static const int four[3] = {4, 4, 4};
-    const aset_draft *draft = w->draft;
-    uint64_t marks = (uint64_t)draft->marks[2 * block] | (uint64_t)draft->marks[2 * block + 1] << 32;
-    aset_real corner[3] = {(aset_real)at[0] * 16, (aset_real)at[1] * 16, (aset_real)at[2] * 16};
-    grid_walk g;
-    walk_start(&g, w, t, corner, 4, four);
-    do {
-        unsigned bit = (unsigned)(g.at[0] + 4 * g.at[1] + 16 * g.at[2]);
-        w->counts.cells++;
-        if ((marks >> bit & 1u) != 0) {
-            aset_real base[3] = {corner[0] + (aset_real)g.at[0] * 4, corner[1] + (aset_real)g.at[1] * 4,
-                                 corner[2] + (aset_real)g.at[2] * 4};
-            uint32_t first, end;
-            w->counts.nonempty++;
-            find_facets(draft, block, bits_count(marks & ((UINT64_C(1) << bit) - 1)), &first, &end);
-            if (w->mode == DRAFT_PLANE ? visit_planes(w, base, first, end) : visit_side(w, t, axis, first, end)) {
-                return true;
-            }
+/* Into the next cell; its axis of entry, or -1 if the ray leaves the box. */
+static inline int lanes_step(lanes *l, aset_real *t) {
+    if (l->x.next <= l->y.next) {
+        if (l->x.next <= l->z.next) {
+            return lane_cross(&l->x, &l->cell, t) ? 0 : -1;
         }
-        axis = walk_step(&g, w, &t, corner, 4);
-    } while (axis >= 0);
-    return false;
+    } else if (l->y.next <= l->z.next) {
+        return lane_cross(&l->y, &l->cell, t) ? 1 : -1;
+    }
+    return lane_cross(&l->z, &l->cell, t) ? 2 : -1;
+}
+
+static bool visit_voxel(way *w, uint32_t block, uint64_t marks, unsigned bit, aset_real t, int axis, const aset_real corner[3]) {
+    aset_real base[3] = {corner[0] + (aset_real)(bit % 4 * 4), corner[1] + (aset_real)(bit / 4 % 4 * 4),
+                         corner[2] + (aset_real)(bit / 16 * 4)};
+    uint32_t first, end;
+    w->counts.nonempty++;
+    find_facets(w->draft, block, bits_count(marks & ((UINT64_C(1) << bit) - 1)), &first, &end);
+    return w->mode == DRAFT_PLANE ? visit_planes(w, base, first, end) : visit_side(w, t, axis, first, end);
+}
+
+static bool walk_block(way *w, uint32_t block, aset_real t, int axis, const aset_real corner[3]) {
+    uint64_t marks = (uint64_t)w->draft->marks[2 * block] | (uint64_t)w->draft->marks[2 * block + 1] << 32;
+    uint64_t cells = 0;
+    bool done = false;
+    lanes l;
+    l.cell = 0;
+    l.x = lane_start(&l.cell, w, 0, t, corner[0], 4, R(0.25), 4, 1);
+    l.y = lane_start(&l.cell, w, 1, t, corner[1], 4, R(0.25), 4, 4);
+    l.z = lane_start(&l.cell, w, 2, t, corner[2], 4, R(0.25), 4, 16);
+    do {
+        cells++;
+        if ((marks >> l.cell & 1u) != 0 && visit_voxel(w, block, marks, (unsigned)l.cell, t, axis, corner)) {
+            done = true;
+            break;
+        }
+        axis = lanes_step(&l, &t);
+    } while (axis >= 0 && t < w->t_max);
+    w->counts.cells += cells;
+    return done;
 }
 
 /* The part of the ray that lies in the box; false if there is none. *axis: of entry, -1 if it starts inside. */
@@ -259,30 +287,36 @@ static bool clip(const way *w, aset_real *t_in, int *axis) {
 
 static bool go(way *w) {
     const aset_draft *draft = w->draft;
-    static const aset_real zero[3] = {0, 0, 0};
-    const int count[3] = {(int)draft->blocks[0], (int)draft->blocks[1], (int)draft->blocks[2]};
+    const int32_t nx = (int32_t)draft->blocks[0], ny = (int32_t)draft->blocks[1], nz = (int32_t)draft->blocks[2];
+    const uint32_t *map = draft->map;
+    uint64_t empty = 0;
+    bool done = false;
     aset_real t;
     int axis;
-    grid_walk g;
+    lanes l;
     if (draft->n_facets == 0 || !clip(w, &t, &axis)) {
         return false;
     }
-    walk_start(&g, w, t, zero, 16, count);
-    for (;;) {
-        uint32_t i = ((uint32_t)g.at[2] * draft->blocks[1] + (uint32_t)g.at[1]) * draft->blocks[0] + (uint32_t)g.at[0];
-        uint32_t word = draft->map[i >> 5], bit = UINT32_C(1) << (i & 31u);
-        if ((word & bit) != 0) {
-            if (walk_block(w, draft->rank[i >> 5] + bits_count(word & (bit - 1)), t, axis, g.at)) {
-                return true;
-            }
+    l.cell = 0;
+    l.x = lane_start(&l.cell, w, 0, t, 0, 16, R(1) / 16, nx, 1);
+    l.y = lane_start(&l.cell, w, 1, t, 0, 16, R(1) / 16, ny, nx);
+    l.z = lane_start(&l.cell, w, 2, t, 0, 16, R(1) / 16, nz, nx * ny);
+    do {
+        uint32_t i = (uint32_t)l.cell, word = map[i >> 5], bit = UINT32_C(1) << (i & 31u);
+        if ((word & bit) == 0) {
+            empty++;
         } else {
-            w->counts.cells++;
+            aset_real corner[3] = {(aset_real)(l.cell % nx * 16), (aset_real)(l.cell / nx % ny * 16),
+                                   (aset_real)(l.cell / nx / ny * 16)};
+            if (walk_block(w, draft->rank[i >> 5] + bits_count(word & (bit - 1)), t, axis, corner)) {
+                done = true;
+                break;
+            }
         }
-        axis = walk_step(&g, w, &t, zero, 16);
-        if (axis < 0) {
-            return false;
-        }
-    }
+        axis = lanes_step(&l, &t);
+    } while (axis >= 0 && t < w->t_max);
+    w->counts.cells += empty;
+    return done;
 }
 
 static void way_make(way *w, const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,

@@ -99,22 +99,55 @@ static inline void words_put(uint32_t *words, unsigned width, size_t index, uint
 }
 
 static inline aset_real slope_of(uint32_t code) {
-    return (aset_real)((int32_t)code - SLOPE_STEPS) / SLOPE_STEPS;
+    return (aset_real)((int32_t)code - SLOPE_STEPS) * (R(1) / SLOPE_STEPS);
+}
+
+/* A facet's number of a surface, number of a footprint and height, still packed. */
+static inline uint64_t facet_record(const aset_draft *draft, uint32_t number) {
+    return words_get(draft->facets, draft->width, number);
+}
+
+static inline uint32_t facet_surface(const aset_draft *draft, uint64_t record) {
+    return draft->surfaces[record & ((1u << draft->surface_width) - 1)];
+}
+
+static inline uint32_t facet_footprint(const aset_draft *draft, uint64_t record) {
+    uint32_t print = (uint32_t)(record >> draft->surface_width) & ((1u << draft->footprint_width) - 1);
+    return draft->footprints[print >> 1] >> (print & 1u) * 16 & 0xffffu;
+}
+
+static inline aset_real facet_height(const aset_draft *draft, uint64_t record) {
+    uint32_t code = (uint32_t)(record >> (draft->surface_width + draft->footprint_width));
+    return HEIGHT_LOW + ((aset_real)(int32_t)code + R(0.5)) * HEIGHT_STEP;
+}
+
+static inline unsigned surface_axis(uint32_t surface) {
+    return surface >> 1 & 3u;
+}
+
+static inline bool surface_down(uint32_t surface) {
+    return (surface & 1u) != 0;
+}
+
+static inline aset_real surface_slope_u(uint32_t surface) {
+    return slope_of(surface >> 3 & 63u);
+}
+
+static inline aset_real surface_slope_v(uint32_t surface) {
+    return slope_of(surface >> (3 + SLOPE_BITS) & 63u);
 }
 
 static inline facet facet_read(const aset_draft *draft, uint32_t number) {
-    uint64_t record = words_get(draft->facets, draft->width, number);
-    uint32_t surface = draft->surfaces[record & ((1u << draft->surface_width) - 1)];
-    uint32_t print = (uint32_t)(record >> draft->surface_width) & ((1u << draft->footprint_width) - 1);
-    uint32_t height = (uint32_t)(record >> (draft->surface_width + draft->footprint_width));
+    uint64_t record = facet_record(draft, number);
+    uint32_t surface = facet_surface(draft, record);
     facet f;
-    f.axis = (int)((surface & 7u) >> 1);
-    f.down = (surface & 1u) != 0;
-    f.slope_u = slope_of(surface >> 3 & 63u);
-    f.slope_v = slope_of(surface >> (3 + SLOPE_BITS) & 63u);
+    f.axis = (int)surface_axis(surface);
+    f.down = surface_down(surface);
+    f.slope_u = surface_slope_u(surface);
+    f.slope_v = surface_slope_v(surface);
     f.texture = surface >> SURFACE_TEXTURE_SHIFT;
-    f.footprint = draft->footprints[print >> 1] >> (print & 1u) * 16 & 0xffffu;
-    f.height = HEIGHT_LOW + ((aset_real)height + R(0.5)) * HEIGHT_STEP;
+    f.footprint = facet_footprint(draft, record);
+    f.height = facet_height(draft, record);
     return f;
 }
 
