@@ -1,7 +1,7 @@
 /*
  * prepare.c - a scene, a space over it, its summary and the threads' scratches, all in one arena of the size asked for.
  *
- * The file is read twice: once to count, once to build in exactly the bytes counted.
+ * The file is read once to count, then to build in exactly the bytes counted; a draft reads it as often as the baker asks.
  */
 #include "prepare.h"
 
@@ -112,6 +112,22 @@ static void choose_tracer(prepared *p, const settings *s) {
     t->spd_rules = s->spd_rules;
 }
 
+/* One reading into the baker: reading and baking are timed apart. *told: the source has failed and said so. */
+static aset_status bake_pass(prepared *p, tool_source *source, aset_baker *baker, bool *again, bool *told) {
+    tool_batch batch;
+    aset_sink sink = tool_batch_sink(&batch, NULL, baker);
+    double start = tool_seconds();
+    *told = !tool_source_read(source, &sink);
+    aset_status status = *told ? ASET_ERR_SYNTAX : tool_batch_end(&batch);
+    p->load_s += tool_seconds() - start - batch.seconds;
+    start = tool_seconds();
+    if (status == ASET_OK) {
+        status = aset_baker_pass(baker, again);
+    }
+    p->build_s += batch.seconds + tool_seconds() - start;
+    return status;
+}
+
 /* A draft of what the source holds, in the arena's free bytes. */
 static aset_status bake(prepared *p, const settings *s, tool_source *source, bool *told) {
     aset_baker baker;
@@ -121,16 +137,12 @@ static aset_status bake(prepared *p, const settings *s, tool_source *source, boo
     memcpy(options.divisions, s->grid, sizeof options.divisions);
     aset_status status = aset_baker_init(&baker, &p->arena, &options);
     while (status == ASET_OK && again) {
-        aset_sink sink = aset_baker_sink(&baker);
-        double start = tool_seconds();
-        if (!tool_source_read(source, &sink)) {
-            *told = true;
-            return ASET_ERR_SYNTAX;
-        }
-        status = aset_baker_pass(&baker, &again);
-        p->build_s += tool_seconds() - start;
+        status = bake_pass(p, source, &baker, &again, told);
     }
-    return status == ASET_OK ? aset_baker_finish(&p->draft, &baker) : status;
+    double start = tool_seconds();
+    status = status == ASET_OK ? aset_baker_finish(&p->draft, &baker) : status;
+    p->build_s += tool_seconds() - start;
+    return status;
 }
 
 /* No object is kept: scratches and the draft alone. */
@@ -166,7 +178,7 @@ static aset_status fill_arena(prepared *p, const settings *s, tool_source *sourc
     if (status == ASET_OK && approximates(s) && !p->is_drafted) {
         status = aset_summary_build(&p->summary, &p->space, options.textures, &p->arena);
     }
-    p->build_s = tool_seconds() - start;
+    p->build_s += tool_seconds() - start;
     return status == ASET_OK && p->is_drafted ? bake(p, s, source, told) : status;
 }
 
@@ -193,7 +205,8 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
     aset_status status = p->is_streamed ? fill_streamed(p, s, source, &told)
                                         : fill_arena(p, s, source, &counter.counts, &told);
     if (status == ASET_ERR_NOMEM && p->is_drafted) {
-        tool_error(source->path, 0, "the draft needs %zu bytes, has %" PRIu64, (size_t)s->memory + p->arena.missing, s->memory);
+        tool_error(source->path, 0, "the draft needs %zu bytes, has %" PRIu64, (size_t)s->memory + p->arena.missing,
+                   s->memory);
     } else if (status == ASET_ERR_NOMEM) {
         tell_need(source, s, &counter.counts);
     } else if (status != ASET_OK && !told) {
@@ -209,6 +222,7 @@ bool prepare(prepared *p, const settings *s, const char *path) {
     if (!tool_source_open(&source, path)) {
         return false;
     }
+    tool_source_set(&source, s);
     bool done = prepare_from(p, s, &source);
     tool_source_close(&source);
     if (!done) {

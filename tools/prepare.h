@@ -6,6 +6,7 @@
 #define ASET_TOOLS_PREPARE_H
 
 #include "aset/aset.h"
+#include "aset/stage.h"
 
 #include "tool.h"
 
@@ -29,6 +30,10 @@ typedef struct settings {
     bool has_from, has_at, has_up, has_angle;
     aset_vec3 from, at, up;
     double angle_deg;
+    /* of models */
+    bool has_up_axis, has_ground, ground, smooth;
+    aset_up up_axis;
+    bool transparent; /* pixels that show nothing stay so; no ground unless has_ground */
 } settings;
 
 settings settings_default(void);
@@ -50,20 +55,66 @@ typedef struct prepared {
     double load_s, build_s;
 } prepared;
 
+typedef enum tool_format { TOOL_NFF, TOOL_OBJ, TOOL_STL, TOOL_PLY } tool_format;
+
 /*
- * A source of entities that can be read again: a file, or standard input, which is kept in a temporary file. False after an
- * error line.
+ * A source of entities that can be read again: a file, or standard input, which is kept in a temporary file. A model gets
+ * its stage behind its own entities (then even the very first reading, which finds the box, can give it). All zero but path
+ * and stream is an NFF scene.
  */
 typedef struct tool_source {
     const char *path;
     FILE *stream;
-    bool one_sided_opaque;
+    tool_format format;
+    uint64_t size;         /* bytes, 0: not known */
+    bool one_sided_opaque; /* NFF */
+    /* models; to be changed before the first reading */
+    bool smooth;
+    aset_stage_options stage;
+    /* known after the first reading of a model: of its own, without the stage */
+    bool is_measured;
+    aset_vec3 low, high;
+    uint64_t n_vertices, n_skipped;
 } tool_source;
 
+/* By the name's ending. False after an error line. */
 bool tool_source_open(tool_source *source, const char *path);
-/* Reads it from the start into the sink. False after an error line that names the place. */
+/* What the settings say of models. */
+void tool_source_set(tool_source *source, const settings *s);
+/*
+ * Reads it from the start into the sink. False after an error line that names the place. What is left out of a model is told
+ * on standard error at the first reading.
+ */
 bool tool_source_read(tool_source *source, const aset_sink *sink);
 void tool_source_close(tool_source *source);
+
+/* --- batch.c --- */
+
+#define TOOL_BATCH_BYTES 65536u
+
+/*
+ * A sink that collects entities and hands them to another one when it is full, so that reading and what the other does can
+ * be timed apart. Triangles of one material go to a baker, if that is the other one, as an array.
+ */
+typedef struct tool_batch {
+    aset_sink target;
+    aset_baker *baker;  /* NULL: the target is none */
+    double seconds;     /* that the target took */
+    aset_status status; /* the first error of the target, which gets nothing more then */
+    size_t used, run;   /* bytes; where the record of the last entity begins, if that is triangles, else SIZE_MAX */
+    unsigned n_points;  /* of the triangle in hand; 3 or more: of another polygon */
+    bool is_triangle;
+    aset_real triangle[9];
+    union {
+        unsigned char bytes[TOOL_BATCH_BYTES];
+        double alignment;
+    } records;
+} tool_batch;
+
+/* Of the two one is NULL. Its functions do not fail: see tool_batch_end. */
+aset_sink tool_batch_sink(tool_batch *batch, const aset_sink *target, aset_baker *baker);
+/* Hands over the rest. The target's first error, or ASET_OK. */
+aset_status tool_batch_end(tool_batch *batch);
 
 /* Every method the tool knows; ends with NULL. */
 extern const aset_method *const tool_methods[];

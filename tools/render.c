@@ -16,7 +16,8 @@
 
 static const char help[] =
     "aset render SCENE [-o OUT.png]: draws a scene exactly or approximately, in a fixed block of memory.\n"
-    "SCENE is an .nff file, or - for NFF on standard input. Without -o the picture is drawn and thrown away.\n"
+    "SCENE is an .nff file, a model (.obj, .stl, .ply), or - for NFF on standard input. Without -o the picture is drawn\n"
+    "and thrown away. A model, which has none, gets a view that shows all of it, two lights, a ground and a background.\n"
     "\n"
     "  -o, --output FILE       .png or .ppm; - for PNG on standard output\n"
     "  -m, --method NAME       mset, set, grid, octree, arts, excell or brute; default mset;\n"
@@ -26,18 +27,22 @@ static const char help[] =
     "      --grid N            divisions on every axis; or NXxNYxNZ, or auto (as many as pay and fit); default auto\n"
     "      --octree-depth D    octree, arts, excell: halvings of each axis; default 6\n"
     "      --leaf K            octree, arts, excell: objects in a leaf that is not halved; default 1\n"
-    "      --cells WORD        what a cell remembers: flat, the paper's average texture; normal or plane, drafts of mset and\n"
-    "                          grid: the surface's direction besides, or where it lies as well; default flat\n"
+    "      --cells WORD        what a cell remembers: flat, the paper's average texture; normal or plane, drafts of mset\n"
+    "                          and grid: the surface's direction besides, or where it lies as well; default flat\n"
     "      --curtail F         trapped rays: fraction of a voxel's diagonal, 0 for off; default 0.5\n"
     "      --curtail-when W    less or more: which side of it is curtailed; default less\n"
     "      --memory BYTES      the arena (K = 1024, M): not one byte more is used; default 8M\n"
-    "  -s, --size WxH          picture; default the scene's, else 512x512\n"
+    "  -s, --size WxH          picture; N is NxN; default the scene's, else 512x512\n"
     "      --samples N         rays a pixel: 1, 4, 9, 16 ...; default 1\n"
     "      --depth N           rays in a chain, the eye ray being 1; default 5\n"
     "      --rules spd         the SPD testing procedure: (W + 1) x (H + 1) rays through pixel corners, opaque one-sided\n"
     "      --rows A:B          only the rows A to B - 1 of the picture\n"
     "  -j, --threads N         default 1\n"
     "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   the camera, instead of the scene's\n"
+    "      --up-axis y|z       models: the axis that points upwards; default z for .stl and .ply, y for .obj\n"
+    "      --ground on|off     models: a ground under it; default on\n"
+    "      --smooth            models: shaded by the normals at their vertices where they have some\n"
+    "      --transparent       pixels that show no object are transparent (PNG); models then have no ground by default\n"
     "      --stats FILE        statistics as JSON; - for standard output\n"
     "      --report            statistics as text on standard output\n"
     "  -q, --quiet             no progress bar\n"
@@ -61,6 +66,10 @@ enum {
     OPTION_AT,
     OPTION_UP,
     OPTION_ANGLE,
+    OPTION_UP_AXIS,
+    OPTION_GROUND,
+    OPTION_SMOOTH,
+    OPTION_TRANSPARENT,
     OPTION_STATS,
     OPTION_REPORT
 };
@@ -87,6 +96,10 @@ static const struct option longs[] = {
     {"at", required_argument, NULL, OPTION_AT},
     {"up", required_argument, NULL, OPTION_UP},
     {"angle", required_argument, NULL, OPTION_ANGLE},
+    {"up-axis", required_argument, NULL, OPTION_UP_AXIS},
+    {"ground", required_argument, NULL, OPTION_GROUND},
+    {"smooth", no_argument, NULL, OPTION_SMOOTH},
+    {"transparent", no_argument, NULL, OPTION_TRANSPARENT},
     {"stats", required_argument, NULL, OPTION_STATS},
     {"report", no_argument, NULL, OPTION_REPORT},
     {"quiet", no_argument, NULL, 'q'},
@@ -143,13 +156,41 @@ static bool parse_samples(settings *s, const char *text) {
     return true;
 }
 
-static bool check_side(const settings *s) {
+/* WxH, or N for NxN. */
+static bool parse_size(settings *s, const char *text) {
+    char square[64];
+    size_t digits = strspn(text, "0123456789");
+    if (digits > 0 && text[digits] == '\0' && 2 * digits + 2 <= sizeof square) {
+        (void)snprintf(square, sizeof square, "%sx%s", text, text);
+        text = square;
+    }
+    if (!tool_parse_size("--size", text, &s->width, &s->height)) {
+        return false;
+    }
     if (s->width > SIDE_MAX || s->height > SIDE_MAX) {
         tool_error(NULL, 0, "--size: %" PRIu32 "x%" PRIu32 " is too large, expected at most %u on a side", s->width,
                    s->height, SIDE_MAX);
         return false;
     }
     return true;
+}
+
+static bool parse_model(settings *s, int option) {
+    static const tool_word axes[] = {{"y", ASET_UP_Y}, {"z", ASET_UP_Z}, {NULL, 0}};
+    unsigned word = 0;
+    switch (option) {
+    case OPTION_UP_AXIS:
+        if (!tool_parse_word("--up-axis", optarg, axes, &word)) {
+            return false;
+        }
+        s->has_up_axis = true;
+        s->up_axis = (aset_up)word;
+        return true;
+    case OPTION_GROUND: s->has_ground = true; return tool_parse_switch("--ground", optarg, &s->ground);
+    case OPTION_SMOOTH: s->smooth = true; return true;
+    case OPTION_TRANSPARENT: s->transparent = true; return true;
+    default: return false;
+    }
 }
 
 static bool parse_more(request *r, int option) {
@@ -180,7 +221,7 @@ static bool parse_more(request *r, int option) {
     case OPTION_ANGLE: s->has_angle = true; return tool_parse_real("--angle", optarg, 0.001, 179.999, &s->angle_deg);
     case OPTION_STATS: r->stats = optarg; return true;
     case OPTION_REPORT: r->report = true; return true;
-    default: return false;
+    default: return parse_model(s, option);
     }
 }
 
@@ -198,7 +239,7 @@ static bool parse_option(request *r, int option) {
         return tool_parse_count("--octree-depth", optarg, 1, ASET_DEPTH_TREE_MAX, &s->tree_depth);
     case OPTION_LEAF: return tool_parse_count("--leaf", optarg, 1, UINT32_MAX, &s->leaf);
     case OPTION_MEMORY: return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &s->memory);
-    case 's': return tool_parse_size("--size", optarg, &s->width, &s->height) && check_side(s);
+    case 's': return parse_size(s, optarg);
     case OPTION_SAMPLES: return parse_samples(s, optarg);
     case OPTION_DEPTH: return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &s->depth);
     case 'j': return tool_parse_count("--threads", optarg, 1, THREADS_MAX, &s->threads);
@@ -206,6 +247,29 @@ static bool parse_option(request *r, int option) {
     case 'h': r->wants_help = true; return true;
     default: return parse_more(r, option);
     }
+}
+
+/* Words that are right by themselves and not together. */
+static bool check_request(const request *r) {
+    const settings *s = &r->settings;
+    bool more = r->report || (r->stats != NULL && strcmp(r->stats, "-") == 0);
+    if (r->output != NULL && strcmp(r->output, "-") == 0 && more) {
+        tool_error(NULL, 0, "--stats: the picture already goes to standard output, expected a file for one of them");
+        return false;
+    }
+    if (r->output != NULL && r->stats != NULL && strcmp(r->output, r->stats) == 0 && strcmp(r->output, "-") != 0) {
+        tool_error(NULL, 0, "--stats: %s is the picture, expected another file", r->stats);
+        return false;
+    }
+    if (s->cells != CELLS_FLAT && s->method != &aset_mset && s->method != &aset_grid) {
+        tool_error(NULL, 0, "--cells: drafts of %s are flat, expected --method mset or grid", aset_method_name(s->method));
+        return false;
+    }
+    if (s->transparent && r->output != NULL && tool_has_extension(r->output, ".ppm")) {
+        tool_error(NULL, 0, "--transparent: %s cannot be transparent, expected a .png", r->output);
+        return false;
+    }
+    return true;
 }
 
 static bool parse_request(request *r, int argc, char **argv) {
@@ -228,23 +292,14 @@ static bool parse_request(request *r, int argc, char **argv) {
     if (r->is_aset && !r->has_approx) {
         r->settings.approx_kinds = ASET_ALL_KINDS;
     }
-    bool more = r->report || (r->stats != NULL && strcmp(r->stats, "-") == 0);
-    if (r->output != NULL && strcmp(r->output, "-") == 0 && more) {
-        tool_error(NULL, 0, "--stats: the picture already goes to standard output, expected a file for one of them");
-        return false;
-    }
-    if (r->output != NULL && r->stats != NULL && strcmp(r->output, r->stats) == 0 && strcmp(r->output, "-") != 0) {
-        tool_error(NULL, 0, "--stats: %s is the picture, expected another file", r->stats);
-        return false;
-    }
-    return true;
+    return check_request(r);
 }
 
 /* What the threads share; the lock guards next, written and failed. */
 typedef struct crew {
     const prepared *p;
     tool_picture *file; /* NULL: thrown away */
-    uint32_t first, end, columns, next, written;
+    uint32_t first, end, columns, channels, next, written;
     bool failed;
     pthread_mutex_t lock;
     pthread_cond_t turn;
@@ -257,13 +312,30 @@ typedef struct worker {
     uint8_t *row;
 } worker;
 
+/*
+ * A row whose colours are mixed with the background, by coverage, into one whose colours are the objects' own, as PNG has
+ * it: else a light rim would show around the object on any other background.
+ */
+static void unmix(uint8_t *row, uint32_t columns, const aset_colour *background) {
+    const aset_real back[3] = {background->r, background->g, background->b};
+    for (uint32_t i = 0; i < columns; i++, row += 4) {
+        float alpha = (float)row[3] / 255;
+        for (int k = 0; k < 3; k++) {
+            float behind = back[k] < 1 ? (float)back[k] * 255 : 255;
+            float own = alpha > 0 ? ((float)row[k] - (1 - alpha) * behind) / alpha + 0.5f : 0;
+            row[k] = own > 0 ? own < 255 ? (uint8_t)own : 255 : 0;
+        }
+    }
+}
+
 static void draw_rows(worker *w) {
     crew *c = w->crew;
     aset_picture picture;
     memset(&picture, 0, sizeof picture);
     picture.width = c->p->view.width_px;
     picture.height = c->p->view.height_px;
-    picture.format = ASET_RGB888;
+    picture.format = c->channels == 4 ? ASET_RGBA8888 : ASET_RGB888;
+    picture.transparent = c->channels == 4;
     picture.pixels = w->row;
     (void)pthread_mutex_lock(&c->lock);
     while (!c->failed && c->next < c->end) {
@@ -271,6 +343,9 @@ static void draw_rows(worker *w) {
         (void)pthread_mutex_unlock(&c->lock);
         aset_status status =
             aset_render_rows(&c->p->tracer, &c->p->view, &picture, row, 1, w->scratch, &w->statistics);
+        if (c->channels == 4) {
+            unmix(w->row, c->columns, &c->p->tracer.scene->background);
+        }
         (void)pthread_mutex_lock(&c->lock);
         while (!c->failed && c->written != row) {
             (void)pthread_cond_wait(&c->turn, &c->lock);
@@ -298,7 +373,7 @@ static void *work(void *context) {
 static bool draw(crew *c, uint32_t n_threads, aset_statistics *statistics) {
     worker *workers = calloc(n_threads, sizeof *workers);
     pthread_t *threads = calloc(n_threads, sizeof *threads);
-    uint8_t *rows = malloc((size_t)n_threads * c->columns * 3);
+    uint8_t *rows = malloc((size_t)n_threads * c->columns * c->channels);
     uint32_t n_started = 1;
     bool ready = workers != NULL && threads != NULL && rows != NULL;
     if (!ready) {
@@ -308,7 +383,7 @@ static bool draw(crew *c, uint32_t n_threads, aset_statistics *statistics) {
     for (uint32_t i = 0; ready && i < n_threads; i++) {
         workers[i].crew = c;
         workers[i].scratch = &c->p->scratches[i];
-        workers[i].row = rows + (size_t)i * c->columns * 3;
+        workers[i].row = rows + (size_t)i * c->columns * c->channels;
     }
     while (ready && n_started < n_threads && pthread_create(&threads[n_started], NULL, work, &workers[n_started]) == 0) {
         n_started++; /* fewer threads than asked for draw the same picture */
@@ -334,6 +409,7 @@ static bool draw_picture(const request *r, const prepared *p, aset_statistics *s
     uint32_t extra = r->settings.spd_rules, rows = p->view.height_px + extra;
     c.p = p;
     c.columns = p->view.width_px + extra;
+    c.channels = r->settings.transparent ? 4 : 3;
     c.first = c.next = c.written = r->has_rows ? r->first_row : 0;
     c.end = r->has_rows ? r->end_row : rows;
     if (c.end > rows) {
@@ -341,7 +417,7 @@ static bool draw_picture(const request *r, const prepared *p, aset_statistics *s
         return false;
     }
     if (r->output != NULL) {
-        c.file = tool_picture_open(r->output, c.columns, c.end - c.first, 3);
+        c.file = tool_picture_open(r->output, c.columns, c.end - c.first, c.channels);
         if (c.file == NULL) {
             return false;
         }

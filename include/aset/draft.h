@@ -55,7 +55,7 @@ typedef struct aset_bake_options {
 
 /* The bytes that a bake takes unless told otherwise: it rarely needs more than one pass then. */
 #define ASET_BYTES_BAKE(nx, ny, nz)                                                                                    \
-    (((size_t)(nx) * (ny) + (size_t)(ny) * (nz) + (size_t)(nz) * (nx)) * 144u + (size_t)(nx) * (ny) * (nz) / 8u + 65536u)
+    (((size_t)(nx) * (ny) + (size_t)(ny) * (nz) + (size_t)(nz) * (nx)) * 124u + (size_t)(nx) * (ny) * (nz) / 8u + 65536u)
 
 /* What the bake did. */
 typedef struct aset_bake_report {
@@ -78,7 +78,7 @@ typedef struct aset_baker {
     aset_sink stage_sink;
     int phase;
     aset_status failure;
-    bool outgrown, single, has_material, counting;
+    bool single, has_material, is_other, counting;
     aset_material material, only;
     uint32_t n_materials;
     aset_real largest[ASET_KEPT_MAX + 1]; /* squared diagonals of the largest objects, in descending order */
@@ -91,7 +91,8 @@ typedef struct aset_baker {
     aset_real *points;
     aset_real *crossings;
     uint64_t *marks;
-    unsigned char *region, *bins;
+    unsigned char *region, *after, *bins;
+    uint32_t *keys;
     size_t region_bytes, bins_bytes, bin_bytes;
     uint32_t capacity, n_bins;
     uint64_t *raw; /* one past the first facet; they grow downwards */
@@ -129,7 +130,8 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
 
 /*
  * Ends a pass. *again: the source is wanted once more. ASET_ERR_NOMEM: arena->missing more bytes will do; ASET_ERR_GEOMETRY: the
- * source gave no object, or other ones than in the first pass. After an error the arena is as before the bake.
+ * source gave no object, or other ones than in the first pass; ASET_ERR_LIMIT: over 10^9 layers of surface in one voxel. After an
+ * error the arena is as before the bake.
  */
 aset_status aset_baker_pass(aset_baker *baker, bool *again);
 

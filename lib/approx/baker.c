@@ -26,7 +26,7 @@
 #define AUTO_BYTES_PER_SQUARE 112u
 /* What the library takes as coordinates at all; anything else goes the way that refuses it. */
 #define COORDINATE_MAX R(1e15)
-#define TEXTURES_MAX 4096u
+#define TEXTURES_MAX 2048u
 #define LAYERS_MAX ((ASET_BAKE_DIVISIONS_MAX + 3) / 4)
 
 static uint32_t n_all_blocks(const aset_baker *b) {
@@ -36,9 +36,7 @@ static uint32_t n_all_blocks(const aset_baker *b) {
 /* ---- bins ---- */
 
 static void clear_bins(aset_baker *b) {
-    for (uint32_t i = 0; i < b->capacity; i++) {
-        baker_bin(b, i)->key = BIN_EMPTY;
-    }
+    memset(b->keys, 0xff, b->capacity * sizeof *b->keys); /* BIN_EMPTY */
     b->n_bins = 0;
 }
 
@@ -49,21 +47,24 @@ static uint32_t layer_of(const aset_baker *b, uint32_t key) {
 
 /* Puts a bin where its key's search finds it: at or before its place, all before which is in order. */
 static void settle_bin(aset_baker *b, uint32_t slot) {
-    bin moved;
-    memcpy(&moved, baker_bin(b, slot), b->bin_bytes);
-    baker_bin(b, slot)->key = BIN_EMPTY;
-    memcpy(baker_bin(b, baker_slot(b, moved.key)), &moved, b->bin_bytes);
+    uint32_t key = b->keys[slot];
+    b->keys[slot] = BIN_EMPTY;
+    uint32_t to = baker_slot(b, key);
+    b->keys[to] = key;
+    if (to != slot) {
+        memcpy(baker_bin(b, to), baker_bin(b, slot), b->bin_bytes);
+    }
 }
 
 /* After some were emptied: every search must find its key again. It starts behind an empty slot, where no run of bins wraps. */
 static void settle_bins(aset_baker *b) {
     uint32_t start = 0;
-    while (start < b->capacity && baker_bin(b, start)->key != BIN_EMPTY) {
+    while (start < b->capacity && b->keys[start] != BIN_EMPTY) {
         start++;
     }
     for (uint32_t i = 1; i < b->capacity; i++) {
         uint32_t slot = start + i < b->capacity ? start + i : start + i - b->capacity;
-        if (baker_bin(b, slot)->key != BIN_EMPTY) {
+        if (b->keys[slot] != BIN_EMPTY) {
             settle_bin(b, slot);
         }
     }
@@ -74,9 +75,8 @@ static bool lower_ceiling(aset_baker *b) {
     uint32_t in_layer[LAYERS_MAX] = {0};
     uint32_t ceiling = b->floor_layer + 1, kept;
     for (uint32_t i = 0; i < b->capacity; i++) {
-        uint32_t key = baker_bin(b, i)->key;
-        if (key != BIN_EMPTY) {
-            in_layer[layer_of(b, key)]++;
+        if (b->keys[i] != BIN_EMPTY) {
+            in_layer[layer_of(b, b->keys[i])]++;
         }
     }
     kept = in_layer[b->floor_layer];
@@ -88,9 +88,8 @@ static bool lower_ceiling(aset_baker *b) {
     }
     b->ceiling_layer = ceiling;
     for (uint32_t i = 0; i < b->capacity; i++) {
-        bin *it = baker_bin(b, i);
-        if (it->key != BIN_EMPTY && layer_of(b, it->key) >= ceiling) {
-            it->key = BIN_EMPTY;
+        if (b->keys[i] != BIN_EMPTY && layer_of(b, b->keys[i]) >= ceiling) {
+            b->keys[i] = BIN_EMPTY;
         }
     }
     settle_bins(b);
@@ -103,9 +102,8 @@ static bool lower_ceiling(aset_baker *b) {
 /* The bin of a key, made if there is none; NULL: it lies above the ceiling by now, or there is no room at all. */
 static bin *find_bin(aset_baker *b, uint32_t key) {
     uint32_t slot = baker_slot(b, key);
-    bin *it = baker_bin(b, slot);
-    if (it->key == key) {
-        return it;
+    if (b->keys[slot] == key) {
+        return baker_bin(b, slot);
     }
     if (b->n_bins >= b->capacity - b->capacity / 8) {
         if (!lower_ceiling(b)) {
@@ -115,10 +113,11 @@ static bin *find_bin(aset_baker *b, uint32_t key) {
         if (layer_of(b, key) >= b->ceiling_layer) {
             return NULL;
         }
-        it = baker_bin(b, baker_slot(b, key));
+        slot = baker_slot(b, key);
     }
+    bin *it = baker_bin(b, slot);
     memset(it, 0, b->bin_bytes);
-    it->key = key;
+    b->keys[slot] = key;
     b->n_bins++;
     uint32_t voxel = key / 6, x = voxel % b->n[0], y = voxel / b->n[0] % b->n[1], z = voxel / b->n[0] / b->n[1];
     b->marks[((size_t)(z / 4) * b->blocks[1] + y / 4) * b->blocks[0] + x / 4] |=
@@ -131,13 +130,13 @@ static bin *find_bin(aset_baker *b, uint32_t key) {
 /* A polygon's plane over the columns (u, v) of the side that it faces. */
 typedef struct sheet {
     int a, u, v;
-    bool down;
-    aset_real at_u, at_v, at_a, slope_u, slope_v; /* a point of it, its slopes */
+    const aset_real *normal, *corner; /* its normal, a point of it */
+    aset_real at_u, at_v, at_a, slope_u, slope_v; /* the same point, its slopes */
     int64_t unit_u, unit_v;                       /* the slopes in units */
     uint32_t key_side;
     bin *last; /* of the sample before */
-    uint32_t last_key;
-    bool seen;
+    uint32_t last_key, last_ceiling;
+    bool seen; /* a middle was met, and what follows from normal and corner is there */
 } sheet;
 
 /* One column's middle. */
@@ -150,19 +149,23 @@ static void add_sample(aset_baker *b, sheet *s, int32_t i, int32_t j) {
     at[s->u] = (uint32_t)i / 4;
     at[s->v] = (uint32_t)j / 4;
     at[s->a] = k < b->n[s->a] ? k : b->n[s->a] - 1;
-    s->seen = true;
     if (at[2] / 4 < b->floor_layer || at[2] / 4 >= b->ceiling_layer) {
         return;
     }
     uint32_t key = ((at[2] * b->n[1] + at[1]) * b->n[0] + at[0]) * 6 + s->key_side;
-    if (key != s->last_key || s->last == NULL || s->last->key != key) { /* a bin may have moved with the ceiling */
+    if (key != s->last_key || s->last == NULL || s->last_ceiling != b->ceiling_layer) { /* bins move with the ceiling */
         s->last = find_bin(b, key);
         s->last_key = key;
+        s->last_ceiling = b->ceiling_layer;
         if (s->last == NULL) {
             return;
         }
     }
     bin *it = s->last;
+    if (it->n == SAMPLES_MAX) {
+        b->failure = ASET_ERR_LIMIT;
+        return;
+    }
     it->footprint |= 1u << ((i & 3) + 4 * (j & 3));
     it->n++;
     it->columns_u += (uint32_t)i & 3u;
@@ -182,26 +185,54 @@ static int64_t to_units(aset_real slope) {
 }
 
 /* The first column whose middle is not below x, or how many there are; x of any size. */
-static int32_t first_column(aset_real x, uint32_t n) {
-    aset_real k = x - R(0.5);
-    if (!(k > 0)) {
-        return 0;
-    }
-    if (k >= (aset_real)n * 4) {
-        return (int32_t)(n * 4);
-    }
+static inline int32_t first_column(aset_real x, uint32_t n) {
+    aset_real k = real_min(real_max(x - R(0.5), 0), (aset_real)(int32_t)(n * 4)); /* 0 if it is not a number */
     int32_t below = (int32_t)k;
     return below + ((aset_real)below < k);
 }
 
 /* u where the edge from p to q crosses the row's middle, computed the same way from both sides of the edge. */
-static bool crosses(const aset_real *p, const aset_real *q, int u, int v, aset_real middle, aset_real *at) {
+static inline bool crosses(const aset_real *p, const aset_real *q, int u, int v, aset_real middle, aset_real *at) {
     if ((p[v] <= middle) == (q[v] <= middle)) {
         return false;
     }
     const aset_real *low = p[v] < q[v] ? p : q, *high = p[v] < q[v] ? q : p;
     *at = low[u] + (middle - low[v]) / (high[v] - low[v]) * (high[u] - low[u]);
     return true;
+}
+
+/* The plane, when the first middle is met: most sheets meet none. */
+static void make_plane(sheet *s) {
+    s->slope_u = -s->normal[s->u] / s->normal[s->a];
+    s->slope_v = -s->normal[s->v] / s->normal[s->a];
+    s->unit_u = to_units(s->slope_u);
+    s->unit_v = to_units(s->slope_v);
+    s->at_u = s->corner[s->u];
+    s->at_v = s->corner[s->v];
+    s->at_a = s->corner[s->a];
+    s->seen = true;
+}
+
+static inline void fill_span(aset_baker *b, sheet *s, aset_real from, aset_real to, int32_t row) {
+    int32_t column = first_column(from, b->n[s->u]), end = first_column(to, b->n[s->u]);
+    if (column < end && !s->seen) {
+        make_plane(s);
+    }
+    for (; column < end; column++) {
+        add_sample(b, s, column, row);
+    }
+}
+
+/* Rows of a triangle: two edges cross each. */
+static void fill_triangle_row(aset_baker *b, sheet *s, const aset_real *points, int32_t row) {
+    aset_real middle = (aset_real)row + R(0.5), at[3];
+    uint32_t n = 0;
+    n += crosses(points, points + 3, s->u, s->v, middle, &at[n]);
+    n += crosses(points + 3, points + 6, s->u, s->v, middle, &at[n]);
+    n += crosses(points + 6, points, s->u, s->v, middle, &at[n]);
+    if (n >= 2) {
+        fill_span(b, s, real_min(at[0], at[1]), real_max(at[0], at[1]), row);
+    }
 }
 
 static void fill_row(aset_baker *b, sheet *s, const aset_real *points, uint32_t n, int32_t row, aset_real *crossings) {
@@ -219,10 +250,7 @@ static void fill_row(aset_baker *b, sheet *s, const aset_real *points, uint32_t 
         crossings[k] = at;
     }
     for (uint32_t i = 0; i + 1 < count; i += 2) {
-        int32_t end = first_column(crossings[i + 1], b->n[s->u]);
-        for (int32_t column = first_column(crossings[i], b->n[s->u]); column < end; column++) {
-            add_sample(b, s, column, row);
-        }
+        fill_span(b, s, crossings[i], crossings[i + 1], row);
     }
 }
 
@@ -241,28 +269,9 @@ static void normal_of(const aset_real *points, uint32_t n, aset_real normal[3]) 
     }
 }
 
-/*
- * A polygon in columns. Most of a fine model's triangles hold no column's middle: if their box has none along two axes, no
- * side sees one, and that is found before anything else is computed.
- */
-static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings) {
-    int32_t from[3], to[3];
-    aset_real low[3], high[3];
-    int without = 0;
-    for (int a = 0; a < 3; a++) {
-        low[a] = high[a] = points[a];
-        for (uint32_t i = 1; i < n; i++) {
-            low[a] = real_min(low[a], points[3 * i + (uint32_t)a]);
-            high[a] = real_max(high[a], points[3 * i + (uint32_t)a]);
-        }
-        from[a] = first_column(low[a], b->n[a]);
-        to[a] = first_column(high[a], b->n[a]);
-        without += from[a] == to[a];
-    }
-    b->report.unseen++; /* until it is seen */
-    if (without >= 2) {
-        return;
-    }
+/* A polygon whose columns reach from..to on each axis. */
+static void sample_sheet(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings, const int32_t from[3],
+                         const int32_t to[3]) {
     aset_real normal[3];
     normal_of(points, n, normal);
     sheet s;
@@ -270,30 +279,52 @@ static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, a
                                                      : (real_abs(normal[1]) >= real_abs(normal[2]) ? 1 : 2);
     s.u = s.a < 2 ? s.a + 1 : 0;
     s.v = s.u < 2 ? s.u + 1 : 0;
-    if (normal[s.a] == 0 || from[s.u] == to[s.u]) {
+    if (normal[s.a] == 0 || from[s.u] == to[s.u] || from[s.v] == to[s.v]) {
         return;
     }
-    s.down = normal[s.a] < 0;
-    s.slope_u = -normal[s.u] / normal[s.a];
-    s.slope_v = -normal[s.v] / normal[s.a];
-    s.unit_u = to_units(s.slope_u);
-    s.unit_v = to_units(s.slope_v);
-    s.at_u = points[s.u];
-    s.at_v = points[s.v];
-    s.at_a = points[s.a];
-    s.key_side = (uint32_t)s.a * 2 + s.down;
+    s.normal = normal;
+    s.corner = points;
+    s.key_side = (uint32_t)s.a * 2 + (normal[s.a] < 0);
     s.last = NULL;
     s.last_key = BIN_EMPTY;
+    s.last_ceiling = 0;
     s.seen = false;
     for (int32_t row = from[s.v]; row < to[s.v] && b->failure == ASET_OK; row++) {
-        fill_row(b, &s, points, n, row, crossings);
+        if (n == 3) {
+            fill_triangle_row(b, &s, points, row);
+        } else {
+            fill_row(b, &s, points, n, row, crossings);
+        }
     }
     b->report.unseen -= s.seen;
 }
 
+/*
+ * A polygon in columns. Most of a fine model's triangles hold no column's middle: if their box has none along two axes, no
+ * side sees one, and that is found before anything else is computed.
+ */
+static inline void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings) {
+    int32_t from[3], to[3];
+    int without = 0;
+    for (int a = 0; a < 3; a++) {
+        aset_real low = points[a], high = low;
+        for (uint32_t i = 1; i < n; i++) {
+            low = real_min(low, points[3 * i + (uint32_t)a]);
+            high = real_max(high, points[3 * i + (uint32_t)a]);
+        }
+        from[a] = first_column(low, b->n[a]);
+        to[a] = first_column(high, b->n[a]);
+        without += from[a] == to[a];
+    }
+    b->report.unseen++; /* until it is seen */
+    if (without < 2) {
+        sample_sheet(b, points, n, crossings, from, to);
+    }
+}
+
 /* ---- objects ---- */
 
-static bool is_kept(const aset_baker *b, aset_vec3 low, aset_vec3 high, uint32_t n_points) {
+static inline bool is_kept(const aset_baker *b, aset_vec3 low, aset_vec3 high, uint32_t n_points) {
     aset_vec3 d = vec_sub(high, low);
     return b->n_kept > 0 && n_points <= ASET_KEPT_POINTS_MAX && vec_dot(d, d) >= b->kept_from;
 }
@@ -306,21 +337,14 @@ static void fit(aset_baker *b, aset_vec3 low, aset_vec3 high) {
     if (is_first) {
         b->only = b->material;
         b->n_materials = 1;
-    } else if (!texture_equal(&b->only, &b->material)) {
-        b->n_materials += b->n_materials < 2;
+    } else if (b->n_materials < 2 && b->is_other && !texture_equal(&b->only, &b->material)) {
+        b->n_materials = 2;
     }
+    b->is_other = false;
 }
 
-/* An object's box in the first pass: the largest of them are remembered. */
-static void measure(aset_baker *b, aset_vec3 low, aset_vec3 high, uint32_t n_points) {
-    aset_vec3 d = vec_sub(high, low);
-    aset_real diagonal = vec_dot(d, d);
-    b->report.objects++;
-    fit(b, low, high);
-    b->max_points = n_points > b->max_points ? n_points : b->max_points;
-    if (n_points > ASET_KEPT_POINTS_MAX || (b->n_largest > ASET_KEPT_MAX && diagonal <= b->largest[ASET_KEPT_MAX])) {
-        return;
-    }
+/* One of the largest objects so far: its squared diagonal. */
+static void remember(aset_baker *b, aset_real diagonal) {
     uint32_t k = b->n_largest > ASET_KEPT_MAX ? ASET_KEPT_MAX : b->n_largest++;
     for (; k > 0 && b->largest[k - 1] < diagonal; k--) {
         b->largest[k] = b->largest[k - 1];
@@ -328,7 +352,19 @@ static void measure(aset_baker *b, aset_vec3 low, aset_vec3 high, uint32_t n_poi
     b->largest[k] = diagonal;
 }
 
-static void to_columns(const aset_baker *b, const aset_real *point, aset_real *column) {
+/* An object's box in the first pass. */
+static void measure(aset_baker *b, aset_vec3 low, aset_vec3 high, uint32_t n_points) {
+    aset_vec3 d = vec_sub(high, low);
+    aset_real diagonal = vec_dot(d, d);
+    b->report.objects++;
+    fit(b, low, high);
+    b->max_points = n_points > b->max_points ? n_points : b->max_points;
+    if (n_points <= ASET_KEPT_POINTS_MAX && (b->n_largest <= ASET_KEPT_MAX || diagonal > b->largest[ASET_KEPT_MAX])) {
+        remember(b, diagonal);
+    }
+}
+
+static inline void to_columns(const aset_baker *b, const aset_real *point, aset_real *column) {
     for (int a = 0; a < 3; a++) {
         column[a] = (point[a] - b->origin[a]) * b->scale[a];
     }
@@ -353,14 +389,14 @@ static void take_polygon(aset_baker *b, uint32_t n) {
 
 #if ASET_WITH_SPHERES || ASET_WITH_CONES
 static void sample_quad(aset_baker *b, aset_vec3 corners[4]) {
-    aset_real points[2][9], crossings[4];
+    aset_real points[2][9];
     for (int half = 0; half < 2; half++) {
         for (int i = 0; i < 3; i++) {
             aset_vec3 c = corners[i == 0 ? 0 : i + half];
             aset_real point[3] = {c.x, c.y, c.z};
             to_columns(b, point, points[half] + 3 * i);
         }
-        sample_polygon(b, points[half], 3, crossings);
+        sample_polygon(b, points[half], 3, NULL);
     }
 }
 
@@ -468,7 +504,7 @@ static aset_status take_material(void *context, const aset_material *material) {
     texture_sum_add(&sum, material);
     memcpy(b->parts, sum.parts, sizeof b->parts);
     b->material = *material;
-    b->has_material = true;
+    b->has_material = b->is_other = true;
     return ASET_OK;
 }
 
@@ -530,33 +566,97 @@ static aset_status take_polygon_end(void *context) {
     return ASET_OK;
 }
 
-/* The kept ones and the first pass go the long way; the rest is sampled where it stands. */
+/* The way that every sink's triangle goes, for those that need it: refused ones, kept ones. */
+static aset_status take_triangle(aset_baker *b, const aset_real *x) {
+    aset_sink sink = aset_baker_sink(b);
+    aset_vec3 p[3] = {vec(x[0], x[1], x[2]), vec(x[3], x[4], x[5]), vec(x[6], x[7], x[8])};
+    return aset_sink_polygon(&sink, p, NULL, 3);
+}
+
+static inline void box_of(const aset_real *x, aset_vec3 *low, aset_vec3 *high) {
+    *low = vec(real_min(x[0], real_min(x[3], x[6])), real_min(x[1], real_min(x[4], x[7])), real_min(x[2], real_min(x[5], x[8])));
+    *high = vec(real_max(x[0], real_max(x[3], x[6])), real_max(x[1], real_max(x[4], x[7])), real_max(x[2], real_max(x[5], x[8])));
+}
+
+/* A triangle in the first passes, or one that is to be refused. */
+static aset_status measure_triangle(aset_baker *b, const aset_real *x) {
+    aset_vec3 low, high;
+    box_of(x, &low, &high);
+    if (b->phase == PHASE_FIT && !is_kept(b, low, high, 3)) {
+        fit(b, low, high);
+        return ASET_OK;
+    }
+    return take_triangle(b, x);
+}
+
+/* Triangles looked at together: their box is checked once. */
+#define CHUNK 64u
+
+/* n triangles, at most CHUNK, in the first pass. False, and nothing done, if one of them may have to be refused. */
+static bool measure_chunk(aset_baker *b, const aset_real *x, size_t n) {
+    aset_vec3 low, high;
+    aset_real diagonals[CHUNK], sum = 0;
+    box_of(x, &low, &high);
+    for (size_t i = 0; i < n; i++, x += 9) {
+        aset_vec3 from, to;
+        box_of(x, &from, &to);
+        low = vec_min(low, from);
+        high = vec_max(high, to);
+        aset_vec3 d = vec_sub(to, from);
+        diagonals[i] = vec_dot(d, d);
+        sum += x[0] + x[1] + x[2] + x[3] + x[4] + x[5] + x[6] + x[7] + x[8]; /* not finite if any is not */
+    }
+    if (!(vec_largest(low) <= COORDINATE_MAX && vec_largest(high) <= COORDINATE_MAX && real_finite(sum))) {
+        return false;
+    }
+    fit(b, low, high);
+    b->report.objects += n;
+    b->max_points = b->max_points > 3 ? b->max_points : 3;
+    for (size_t i = 0; i < n; i++) {
+        if (b->n_largest <= ASET_KEPT_MAX || diagonals[i] > b->largest[ASET_KEPT_MAX]) {
+            remember(b, diagonals[i]);
+        }
+    }
+    return true;
+}
+
+static aset_status measure_triangles(aset_baker *b, const aset_real *x, size_t n) {
+    aset_status status = ASET_OK;
+    while (n > 0 && status == ASET_OK) {
+        size_t some = n < CHUNK ? n : CHUNK;
+        if (b->phase != PHASE_MEASURE || !measure_chunk(b, x, some)) {
+            for (size_t i = 0; i < some && status == ASET_OK; i++) {
+                status = measure_triangle(b, x + 9 * i);
+            }
+        }
+        x += 9 * some;
+        n -= some;
+    }
+    return status;
+}
+
 aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates, size_t n) {
     if (baker == NULL || (coordinates == NULL && n > 0)) {
         return ASET_ERR_ARGUMENT;
     }
-    aset_sink sink = aset_baker_sink(baker);
     aset_status status = check_material(baker);
+    if (status != ASET_OK || baker->phase != PHASE_BAKE) {
+        return status != ASET_OK ? status : measure_triangles(baker, coordinates, n);
+    }
     for (size_t i = 0; i < n && status == ASET_OK; i++, coordinates += 9) {
-        aset_vec3 p[3];
-        aset_real crossings[4], columns[9];
-        for (int k = 0; k < 3; k++) {
-            p[k] = vec(coordinates[3 * k], coordinates[3 * k + 1], coordinates[3 * k + 2]);
-        }
-        aset_vec3 low = vec_min(p[0], vec_min(p[1], p[2])), high = vec_max(p[0], vec_max(p[1], p[2]));
-        bool is_plain = vec_largest(low) <= COORDINATE_MAX && vec_largest(high) <= COORDINATE_MAX && vec_finite(vec_add(low, high));
-        if (!is_plain || is_kept(baker, low, high, 3)) {
-            status = aset_sink_polygon(&sink, p, NULL, 3);
-        } else if (baker->phase == PHASE_MEASURE) {
-            measure(baker, low, high, 3);
-        } else if (baker->phase == PHASE_FIT) {
-            fit(baker, low, high);
-        } else {
-            for (int k = 0; k < 3; k++) {
-                to_columns(baker, coordinates + 3 * k, columns + 3 * k);
+        aset_real columns[9];
+        if (baker->n_kept > 0) {
+            aset_vec3 low, high;
+            box_of(coordinates, &low, &high);
+            if (is_kept(baker, low, high, 3)) {
+                status = take_triangle(baker, coordinates);
+                continue;
             }
-            sample_polygon(baker, columns, 3, crossings);
         }
+        for (int k = 0; k < 3; k++) {
+            to_columns(baker, coordinates + 3 * k, columns + 3 * k);
+        }
+        sample_polygon(baker, columns, 3, NULL);
     }
     return status;
 }
@@ -702,22 +802,27 @@ static void cut_region(aset_baker *b) {
     at += (size_t)n_all_blocks(b) * sizeof *b->marks;
     b->textures = (aset_material *)(void *)at;
     at += ASET_ROUND(b->texture_capacity * sizeof *b->textures);
-    b->bins = at;
+    b->after = at;
     b->raw = (uint64_t *)(void *)(b->region + b->region_bytes);
     memset(b->marks, 0, (size_t)n_all_blocks(b) * sizeof *b->marks);
 }
 
+/* A key, a bin, and the raw facet that it may become. */
+#define BYTES_PER_BIN(b) (sizeof *(b)->keys + (b)->bin_bytes + sizeof *(b)->raw)
 /* The fewest bins worth a pass. */
 #define BINS_MIN 64u
 
 static bool start_pass(aset_baker *b) {
-    size_t left = (size_t)((unsigned char *)(b->raw - b->n_raw) - b->bins);
-    size_t capacity = left / (b->bin_bytes + sizeof *b->raw); /* every bin may become a raw facet */
+    size_t left = (size_t)((unsigned char *)(b->raw - b->n_raw) - b->after);
+    size_t capacity = left / BYTES_PER_BIN(b);
     b->capacity = capacity < UINT32_MAX / 2 ? (uint32_t)capacity : UINT32_MAX / 2;
     b->ceiling_layer = b->blocks[2];
-    if (b->capacity < BINS_MIN) {
+    if (b->capacity <= BINS_MIN) {
         return false;
     }
+    b->capacity--; /* for the rounding of the keys */
+    b->keys = (uint32_t *)(void *)b->after;
+    b->bins = b->after + ASET_ROUND(b->capacity * sizeof *b->keys);
     clear_bins(b);
     b->report.unseen = 0;
     return true;
@@ -735,7 +840,7 @@ static aset_status give_up(aset_baker *b, size_t need) {
 /* Memory for one layer of blocks in which every side is marked: more than any model needs. */
 static size_t need_at_most(const aset_baker *b) {
     size_t sides = (size_t)b->blocks[0] * b->blocks[1] * 64 * 6;
-    return fixed_bytes(b) + (sides + sides / 4 + 2 * BINS_MIN) * (b->bin_bytes + sizeof *b->raw) +
+    return fixed_bytes(b) + (sides + sides / 4 + 2 * BINS_MIN) * BYTES_PER_BIN(b) +
            (size_t)b->n_counted * sizeof *b->raw;
 }
 
@@ -754,7 +859,7 @@ static aset_status start_baking(aset_baker *b, size_t wanted, uint32_t longest_m
     choose_divisions(b, room, longest_max);
     place_cells(b);
     if (wanted == 0) {
-        wanted = b->options.bytes > 0 ? room : ASET_BYTES_BAKE(b->n[0], b->n[1], b->n[2]) + fixed_bytes(b);
+        wanted = b->options.bytes > 0 ? room : ASET_BYTES_BAKE(b->n[0], b->n[1], b->n[2]);
     }
     b->region_bytes = wanted < room ? wanted / ASET_ALIGN * ASET_ALIGN : room;
     while (!b->single && b->texture_capacity > 64 && fixed_bytes(b) > b->region_bytes / 4) {
@@ -767,7 +872,7 @@ static aset_status start_baking(aset_baker *b, size_t wanted, uint32_t longest_m
     b->counting = false;
     b->failure = ASET_OK;
     b->report.voxels = b->report.merged = 0;
-    if (b->region_bytes < fixed_bytes(b) + BINS_MIN * (b->bin_bytes + sizeof *b->raw)) {
+    if (b->region_bytes < fixed_bytes(b) + 2 * BINS_MIN * BYTES_PER_BIN(b)) {
         b->region_bytes = 0;
         return give_up(b, need_at_most(b));
     }
@@ -831,6 +936,7 @@ static aset_status end_measuring(aset_baker *b) {
     }
     b->phase = PHASE_FIT;
     b->n_materials = 0;
+    b->is_other = true;
     b->stage_sink = aset_counter_sink(&b->counter);
     return ASET_OK;
 }
@@ -838,6 +944,9 @@ static aset_status end_measuring(aset_baker *b) {
 static aset_status end_baking(aset_baker *b) {
     if (b->failure == ASET_ERR_NOMEM) {
         return bake_again(b, need_at_most(b));
+    }
+    if (b->failure != ASET_OK) {
+        return b->failure;
     }
     baker_harvest(b);
     b->floor_layer = b->ceiling_layer;

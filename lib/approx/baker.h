@@ -3,10 +3,11 @@
  *
  * The region, one piece of the arena's free bytes:
  *
- *     | points, crossings | marks | textures | bins . . . . .   <- raw facets |
+ *     | points, crossings | marks | textures | keys | bins . . . . .   <- raw facets |
  *
  * points and crossings hold the polygon in hand. marks: 64 bits for each block of voxels, empty blocks too. A bin gathers what
- * faces one side of one voxel, in whole numbers only, so that the order of objects cannot matter; bins are found by hashing. When
+ * faces one side of one voxel, in whole numbers only, so that the order of objects cannot matter; bins are found by hashing their keys,
+ * voxel * 6 + side, which stand apart from them as a search looks at many. When
  * a pass has ended, the bins of its layers of blocks become raw facets, in the order of voxels and sides.
  */
 #ifndef ASET_APPROX_BAKER_H
@@ -25,15 +26,17 @@ enum { PHASE_MEASURE, PHASE_FIT, PHASE_BAKE, PHASE_DONE, PHASE_FAILED };
 
 /*
  * What faces one side. Every sample stands for one column's middle: so a surface counts by the area that the side sees of it.
- * 64 bits hold the sums of more samples than any source can give (2^52). parts: only where there is more than one material.
+ * SAMPLES_MAX keeps every sum in its bits; a bin that has as many is an error, not a wrong mean. parts: only where there is more
+ * than one material.
  */
 typedef struct bin {
-    uint32_t key; /* voxel * 6 + side, or BIN_EMPTY */
     uint32_t footprint;
-    uint64_t n, columns_u, columns_v;       /* columns: sums of 0 to 3 */
+    uint32_t n, columns_u, columns_v;       /* columns: sums of 0 to 3 */
     int64_t height, slope_u, slope_v;
     uint64_t parts[TEXTURE_PARTS];
 } bin;
+
+#define SAMPLES_MAX (UINT32_MAX / 3)
 
 #define BIN_BYTES_SINGLE offsetof(bin, parts)
 
@@ -44,16 +47,13 @@ static inline bin *baker_bin(const aset_baker *baker, uint32_t slot) {
     return (bin *)(void *)(baker->bins + (size_t)slot * baker->bin_bytes);
 }
 
-/* The slot of a key's bin, or of the empty one where it belongs. */
+/* The slot of a key, or the empty one where it belongs. */
 static inline uint32_t baker_slot(const aset_baker *baker, uint32_t key) {
     uint32_t slot = (uint32_t)((uint64_t)(key * 2654435769u) * baker->capacity >> 32);
-    for (;;) {
-        uint32_t there = baker_bin(baker, slot)->key;
-        if (there == key || there == BIN_EMPTY) {
-            return slot;
-        }
+    while (baker->keys[slot] != key && baker->keys[slot] != BIN_EMPTY) {
         slot = slot + 1 < baker->capacity ? slot + 1 : 0;
     }
+    return slot;
 }
 
 /* The bins of the layers of blocks baked in this pass become raw facets, or are only counted if baker->counting. */

@@ -135,7 +135,7 @@ static const char *check_blocks(const aset_draft *d) {
 static const char *check_facets(const aset_draft *d) {
     for (uint32_t i = 0; i < d->n_surfaces; i++) {
         uint32_t s = d->surfaces[i];
-        if ((s & 7u) > 5 || (s >> 3 & 63u) > 2 * SLOPE_STEPS || (s >> (3 + SLOPE_BITS) & 63u) > 2 * SLOPE_STEPS ||
+        if ((s & 7u) > 5 || (s >> 3 & SLOPE_MASK) > 2 * SLOPE_STEPS || (s >> (3 + SLOPE_BITS) & SLOPE_MASK) > 2 * SLOPE_STEPS ||
             s >> SURFACE_TEXTURE_SHIFT >= d->n_textures) {
             return "a draft with a surface that cannot be";
         }

@@ -19,6 +19,19 @@ static uint32_t slope_code(aset_real slope) {
     return clamp_code(slope * SLOPE_STEPS + SLOPE_STEPS + R(0.5), 2 * SLOPE_STEPS);
 }
 
+/*
+ * A mean of different materials, in coarser steps, so that there are not as many as cells: shares of 1/4, the exponent and the
+ * index of refraction to 4 bits.
+ */
+static uint64_t coarsen(uint64_t part, int number) {
+    uint64_t step = 1u << 14;
+    if (number == 5 || number == 7) {
+        for (step = 1; part / step >= 16; step *= 2) {
+        }
+    }
+    return (part + step / 2) / step * step;
+}
+
 /* The number of a texture in the baker's list: its own, a new one, or the nearest if the list is full. */
 static uint32_t texture_number(aset_baker *b, const bin *it) {
     texture_sum sum;
@@ -27,9 +40,14 @@ static uint32_t texture_number(aset_baker *b, const bin *it) {
     if (b->single) {
         return 0;
     }
+    bool is_mixed = false; /* a single material's sums divide without a rest */
     sum.n = 1;
     for (int p = 0; p < TEXTURE_PARTS; p++) {
         sum.parts[p] = (it->parts[p] + it->n / 2) / it->n;
+        is_mixed = is_mixed || it->parts[p] % it->n != 0;
+    }
+    for (int p = 0; p < TEXTURE_PARTS && is_mixed; p++) {
+        sum.parts[p] = coarsen(sum.parts[p], p);
     }
     aset_material texture = texture_average(&sum);
     memset(&list, 0, sizeof list);
@@ -46,14 +64,14 @@ static uint32_t texture_number(aset_baker *b, const bin *it) {
     return b->n_textures++;
 }
 
-static uint64_t raw_facet(aset_baker *b, const bin *it, bool is_first) {
+static uint64_t raw_facet(aset_baker *b, const bin *it, uint32_t side, bool is_first) {
     aset_real n = (aset_real)it->n;
     aset_real slope_u = (aset_real)it->slope_u / n / BIN_UNIT, slope_v = (aset_real)it->slope_v / n / BIN_UNIT;
     aset_real u = (aset_real)it->columns_u / n + R(0.5), v = (aset_real)it->columns_v / n + R(0.5);
     aset_real height = ((aset_real)it->height / n + R(0.5)) / BIN_UNIT - slope_u * (u - 2) - slope_v * (v - 2);
-    return (uint64_t)it->footprint | (uint64_t)clamp_code((height - HEIGHT_LOW) / HEIGHT_STEP, 63) << RAW_HEIGHT |
+    return (uint64_t)it->footprint | (uint64_t)clamp_code((height - HEIGHT_LOW) / HEIGHT_STEP, (1u << HEIGHT_BITS) - 1) << RAW_HEIGHT |
            (uint64_t)slope_code(slope_u) << RAW_SLOPE_U | (uint64_t)slope_code(slope_v) << RAW_SLOPE_V |
-           (uint64_t)(it->key % 6) << RAW_SIDE | (uint64_t)is_first << RAW_FIRST |
+           (uint64_t)side << RAW_SIDE | (uint64_t)is_first << RAW_FIRST |
            (uint64_t)texture_number(b, it) << RAW_TEXTURE;
 }
 
@@ -61,14 +79,14 @@ static void harvest_voxel(aset_baker *b, uint32_t voxel) {
     bool is_first = true;
     b->report.voxels++;
     for (uint32_t side = 0; side < 6; side++) {
-        const bin *it = baker_bin(b, baker_slot(b, voxel * 6 + side));
-        if (it->key == BIN_EMPTY) {
+        uint32_t key = voxel * 6 + side, slot = baker_slot(b, key);
+        if (b->keys[slot] == BIN_EMPTY) {
             continue;
         }
         b->n_counted++;
         if (!b->counting) {
             b->n_raw++;
-            *(b->raw - b->n_raw) = raw_facet(b, it, is_first);
+            *(b->raw - b->n_raw) = raw_facet(b, baker_bin(b, slot), side, is_first);
         }
         is_first = false;
     }
@@ -124,11 +142,24 @@ static size_t sort_unique(uint32_t *numbers, size_t n) {
     return kept;
 }
 
-static uint32_t find_number(const uint32_t *numbers, uint32_t n, uint32_t wanted) {
-    uint32_t low = 0, high = n - 1;
+/*
+ * Numbers listed once each. Where the largest possible number lets a bitmap be afforded there is one, with ranks; else a sorted
+ * list is searched.
+ */
+typedef struct number_set {
+    const uint32_t *bits, *rank, *list;
+    uint32_t n;
+} number_set;
+
+static uint32_t number_of(const number_set *set, uint32_t wanted) {
+    if (set->bits != NULL) {
+        uint32_t word = set->bits[wanted / 32];
+        return set->rank[wanted / 32] + bits_count(word & ((UINT32_C(1) << wanted % 32) - 1));
+    }
+    uint32_t low = 0, high = set->n - 1;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
-        if (numbers[middle] < wanted) {
+        if (set->list[middle] < wanted) {
             low = middle + 1;
         } else {
             high = middle;
@@ -138,8 +169,13 @@ static uint32_t find_number(const uint32_t *numbers, uint32_t n, uint32_t wanted
 }
 
 static uint32_t surface_of(uint64_t raw) {
-    return (uint32_t)(raw >> RAW_SIDE & 7u) | (uint32_t)(raw >> RAW_SLOPE_U & 63u) << 3 |
-           (uint32_t)(raw >> RAW_SLOPE_V & 63u) << (3 + SLOPE_BITS) | (uint32_t)(raw >> RAW_TEXTURE) << SURFACE_TEXTURE_SHIFT;
+    return (uint32_t)(raw >> RAW_SIDE & 7u) | (uint32_t)(raw >> RAW_SLOPE_U & SLOPE_MASK) << 3 |
+           (uint32_t)(raw >> RAW_SLOPE_V & SLOPE_MASK) << (3 + SLOPE_BITS) | (uint32_t)(raw >> RAW_TEXTURE) << SURFACE_TEXTURE_SHIFT;
+}
+
+/* A raw facet's footprint or surface. */
+static uint32_t number_in(uint64_t raw, bool prints) {
+    return prints ? (uint32_t)(raw & 0xffffu) : surface_of(raw);
 }
 
 /* ---- the words ---- */
@@ -175,7 +211,7 @@ static uint64_t count_words(const aset_baker *b, uint64_t n_facets, uint64_t n_s
 
 size_t baker_words_bound(const aset_baker *b, uint64_t n_facets) {
     uint64_t words = count_words(b, n_facets, n_facets, n_facets < 65535 ? n_facets : 65535);
-    return (size_t)(b->bins - b->region) + (size_t)(words * sizeof(uint32_t)) + (size_t)n_facets * (sizeof(uint32_t) + sizeof(uint64_t)) +
+    return (size_t)(b->after - b->region) + (size_t)(words * sizeof(uint32_t)) + (size_t)n_facets * (sizeof(uint32_t) + sizeof(uint64_t)) +
            65536;
 }
 
@@ -257,18 +293,18 @@ static void write_blocks(uint32_t *words, const aset_draft *d, const aset_baker 
     }
 }
 
-static void write_facets(uint32_t *words, const aset_draft *d, const aset_baker *b, const uint32_t *surfaces,
-                         const uint32_t *prints) {
+static void write_facets(uint32_t *words, const aset_draft *d, const aset_baker *b, const number_set *surfaces,
+                         const number_set *prints) {
     uint32_t *starts = section(d->starts, words, d), *facets = section(d->facets, words, d);
     uint32_t *footprints = section(d->footprints, words, d);
-    memcpy(section(d->surfaces, words, d), surfaces, d->n_surfaces * sizeof *surfaces);
+    memcpy(section(d->surfaces, words, d), surfaces->list, surfaces->n * sizeof *surfaces->list);
     for (uint32_t i = 0; i < d->n_footprints; i++) {
-        footprints[i / 2] |= prints[i] << i % 2 * 16;
+        footprints[i / 2] |= prints->list[i] << i % 2 * 16;
     }
     for (uint32_t i = 0; i < b->n_raw; i++) {
-        uint64_t raw = *(b->raw - 1 - i), record = raw >> RAW_HEIGHT & 63u;
-        record = record << d->footprint_width | find_number(prints, d->n_footprints, (uint32_t)(raw & 0xffffu));
-        record = record << d->surface_width | find_number(surfaces, d->n_surfaces, surface_of(raw));
+        uint64_t raw = *(b->raw - 1 - i), record = raw >> RAW_HEIGHT & ((1u << HEIGHT_BITS) - 1);
+        record = record << d->footprint_width | number_of(prints, number_in(raw, true));
+        record = record << d->surface_width | number_of(surfaces, number_in(raw, false));
         words_put(facets, d->width, i, record);
         starts[i / 32] |= (uint32_t)(raw >> RAW_FIRST & 1u) << i % 32;
     }
@@ -305,9 +341,38 @@ static void write_stage(uint32_t *words, const aset_draft *d, const aset_baker *
     write_kept(w, &b->stage);
 }
 
-/* All surfaces, or all footprints, each once; *n of at most room. False: no room. */
-static bool list_numbers(const aset_baker *b, bool prints, uint32_t *list, size_t room, uint32_t *n) {
-    size_t filled = 0;
+/* All surfaces, or all footprints, below most: in words from *at on. False: no room. */
+static bool collect_by_map(number_set *set, const aset_baker *b, bool prints, uint64_t most, uint32_t **at, const uint32_t *end) {
+    uint64_t n_words = (most + 31) / 32;
+    if (2 * n_words > (uint64_t)(end - *at) / 2) {
+        return false;
+    }
+    uint32_t *bits = *at, *rank = bits + n_words, *list = rank + n_words;
+    memset(bits, 0, (size_t)n_words * sizeof *bits);
+    for (uint32_t i = 0; i < b->n_raw; i++) {
+        uint32_t number = number_in(*(b->raw - 1 - i), prints);
+        bits[number / 32] |= UINT32_C(1) << number % 32;
+    }
+    set->n = 0;
+    for (uint32_t w = 0; w < n_words; w++) {
+        rank[w] = set->n;
+        if (bits_count(bits[w]) > (size_t)(end - list) - set->n) {
+            return false;
+        }
+        for (uint32_t left = bits[w]; left != 0; left &= left - 1) {
+            list[set->n++] = w * 32 + bits_lowest(left);
+        }
+    }
+    set->bits = bits;
+    set->rank = rank;
+    set->list = list;
+    *at = list + set->n;
+    return true;
+}
+
+static bool collect_by_sorting(number_set *set, const aset_baker *b, bool prints, uint32_t **at, const uint32_t *end) {
+    uint32_t *list = *at;
+    size_t filled = 0, room = (size_t)(end - list);
     for (uint32_t i = 0; i < b->n_raw; i++) {
         if (filled == room) {
             filled = sort_unique(list, filled);
@@ -315,33 +380,35 @@ static bool list_numbers(const aset_baker *b, bool prints, uint32_t *list, size_
                 return false;
             }
         }
-        uint64_t raw = *(b->raw - 1 - i);
-        list[filled++] = prints ? (uint32_t)(raw & 0xffffu) : surface_of(raw);
+        list[filled++] = number_in(*(b->raw - 1 - i), prints);
     }
-    *n = (uint32_t)sort_unique(list, filled);
+    set->bits = set->rank = NULL;
+    set->list = list;
+    set->n = (uint32_t)sort_unique(list, filled);
+    *at = list + set->n;
     return true;
+}
+
+static bool collect(number_set *set, const aset_baker *b, bool prints, uint32_t **at, const uint32_t *end) {
+    uint64_t most = prints ? 65536 : (uint64_t)b->n_textures << SURFACE_TEXTURE_SHIFT;
+    return collect_by_map(set, b, prints, most, at, end) || collect_by_sorting(set, b, prints, at, end);
 }
 
 aset_status baker_write(aset_baker *b) {
     aset_draft draft;
-    uint32_t *at = (uint32_t *)(void *)b->bins, *end = (uint32_t *)(void *)(b->raw - b->n_raw);
-    uint32_t *surfaces = at, *prints, n_surfaces = 0, n_prints = 0;
-    if (!list_numbers(b, false, surfaces, (size_t)(end - at), &n_surfaces)) {
+    uint32_t *words = (uint32_t *)(void *)b->after, *end = (uint32_t *)(void *)(b->raw - b->n_raw);
+    number_set surfaces, prints;
+    if (!collect(&surfaces, b, false, &words, end) || !collect(&prints, b, true, &words, end)) {
         return ASET_ERR_NOMEM;
     }
-    prints = surfaces + n_surfaces;
-    if (!list_numbers(b, true, prints, (size_t)(end - prints), &n_prints)) {
-        return ASET_ERR_NOMEM;
-    }
-    uint64_t n_words = count_words(b, b->n_raw, n_surfaces, n_prints);
-    uint32_t *words = prints + n_prints;
+    uint64_t n_words = count_words(b, b->n_raw, surfaces.n, prints.n);
     if (n_words > (uint64_t)(end - words)) {
         return ASET_ERR_NOMEM;
     }
-    write_header(words, b, n_words, n_surfaces, n_prints);
+    write_header(words, b, n_words, surfaces.n, prints.n);
     (void)draft_bind(&draft, words, (size_t)n_words);
     write_blocks(words, &draft, b);
-    write_facets(words, &draft, b, surfaces, prints);
+    write_facets(words, &draft, b, &surfaces, &prints);
     write_stage(words, &draft, b);
     words[WORD_CHECK] = draft_checksum(words, (size_t)n_words);
     memmove(b->region, words, (size_t)n_words * sizeof *words);

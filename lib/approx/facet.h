@@ -50,11 +50,12 @@ enum { TEXTURE_WORDS = 8, LIGHT_WORDS = 7, KEPT_HEAD_WORDS = 1 + TEXTURE_WORDS }
 #define LIGHT_DIRECTIONAL 2u
 
 /* Height codes cover -1 to 5: a plane may lie a little outside of the voxel that it stands for. */
-#define HEIGHT_BITS 6u
+#define HEIGHT_BITS 5u
 #define HEIGHT_LOW R(-1)
-#define HEIGHT_STEP (R(6) / 64)
-#define SLOPE_STEPS 31
-#define SLOPE_BITS 6u
+#define HEIGHT_STEP (R(6) / (1 << HEIGHT_BITS))
+#define SLOPE_BITS 5u
+#define SLOPE_MASK ((1u << SLOPE_BITS) - 1)
+#define SLOPE_STEPS ((1 << (SLOPE_BITS - 1)) - 1)
 #define SURFACE_TEXTURE_SHIFT (3u + 2u * SLOPE_BITS)
 #define SURFACE_TEXTURES_MAX (1u << (32u - SURFACE_TEXTURE_SHIFT))
 
@@ -93,8 +94,13 @@ static inline uint64_t words_get(const uint32_t *words, unsigned width, size_t i
 
 static inline void words_put(uint32_t *words, unsigned width, size_t index, uint64_t value) {
     size_t bit = index * width;
-    for (unsigned i = 0; i < width; i++, bit++) { /* into cleared words */
-        words[bit >> 5] |= (uint32_t)(value >> i & 1u) << (bit & 31u);
+    unsigned shift = (unsigned)(bit & 31u);
+    uint32_t *w = words + (bit >> 5); /* into cleared words; the last two of a section are padding */
+    uint64_t low = value << shift;
+    w[0] |= (uint32_t)low;
+    w[1] |= (uint32_t)(low >> 32);
+    if (shift > 0 && shift + width > 64) {
+        w[2] |= (uint32_t)(value >> (64 - shift));
     }
 }
 
@@ -130,11 +136,11 @@ static inline bool surface_down(uint32_t surface) {
 }
 
 static inline aset_real surface_slope_u(uint32_t surface) {
-    return slope_of(surface >> 3 & 63u);
+    return slope_of(surface >> 3 & SLOPE_MASK);
 }
 
 static inline aset_real surface_slope_v(uint32_t surface) {
-    return slope_of(surface >> (3 + SLOPE_BITS) & 63u);
+    return slope_of(surface >> (3 + SLOPE_BITS) & SLOPE_MASK);
 }
 
 static inline facet facet_read(const aset_draft *draft, uint32_t number) {
