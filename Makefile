@@ -104,9 +104,10 @@ $(BUILD)/tests/bench_peers $(BUILD)/tests/bench_drafts: $(BUILD)/tests/%: tests/
 	$(Q)if [ "$(EMBREE)" = yes ]; then with="-DBENCH_EMBREE=1" lib="-lembree3"; fi; \
 	  $(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $$with -o $@ $< $(PROCEDURAL_A) $(CORE_A) $$lib -lm
 
-test: $(addprefix $(BUILD)/tests/,$(TESTS)) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
+test: $(addprefix $(BUILD)/tests/,$(TESTS) convert) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
 	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
+	  echo "== models.sh"; bash tests/models.sh $(BUILD)/aset $(BUILD)/tests/convert || failed="$$failed models.sh"; \
 	  echo "== plan.sh"; bash tests/plan.sh $(BUILD)/aset "$(CC)" || failed="$$failed plan.sh"; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi; echo "all tests passed"
 

@@ -320,7 +320,7 @@ wrong_values() {
         --approx-depth=1.5 --grid=0 --grid=5x5 --grid=5x5x0 --grid=5x5x5x5 --grid=-1 --grid=1e3 --grid=999999999 --grid= \
         --cells=nonsense --curtail=-1 --curtail=nan --curtail=inf --curtail=0x1 --curtail=half --curtail-when=never \
         --memory=-1 --memory=1T --memory=1.5M --memory=M --memory= --memory=99999999999999999999 --size=0x5 --size=5x0 \
-        --size=5 --size=5x --size=x5 --size=5x5x5 --size=-5x5 --size=1000000x1000000 --samples=0 --samples=3 --samples=-4 \
+        --size=5x --size=x5 --size=5x5x5 --size=-5x5 --size=1000000x1000000 --samples=0 --samples=3 --samples=-4 \
         --depth=0 --depth=-1 --depth=99999999999 --rules=nonsense --rows=5 --rows=5:5 --rows=6:5 --rows=:5 --rows=-1:5 \
         --threads=0 --threads=-1 --threads=x --threads=4294967297 --from=1,2 --from=1,2,3,4 --from=nan,0,0 --at=inf,0,0 \
         --at=1e99,0,0 --up=a,b,c --angle=0 --angle=180 --angle=-5 --angle=nan; do

@@ -6,6 +6,7 @@
  *
  *   arena.h    the caller's block of memory        aset_arena_init
  *   scene.h    entities, sinks, the scene          aset_scene_init, aset_scene_sink, aset_counter_sink
+ *   stage.h    view, lights, ground for a model    aset_stage_emit
  *   space.h    a space subdivision over the scene  aset_space_build
  *   summary.h  what a cell remembers (ASET)        aset_summary_build
  *   draft.h    a model that is only drafted        aset_baker_init, aset_draft_open
@@ -24,6 +25,7 @@
 #include "aset/types.h"
 #include "aset/arena.h"
 #include "aset/scene.h"
+#include "aset/stage.h"
 #include "aset/space.h"
 #include "aset/summary.h"
 #include "aset/draft.h"

@@ -94,6 +94,8 @@
 #define aset_render_rows ASET_LAYOUT(aset_render_rows)
 #define aset_report_text ASET_LAYOUT(aset_report_text)
 #define aset_report_json ASET_LAYOUT(aset_report_json)
+#define aset_stage_material ASET_LAYOUT(aset_stage_material)
+#define aset_stage_emit ASET_LAYOUT(aset_stage_emit)
 #define aset_load_nff ASET_LAYOUT(aset_load_nff)
 #define aset_load_stl ASET_LAYOUT(aset_load_stl)
 #define aset_load_ply ASET_LAYOUT(aset_load_ply)

@@ -11,9 +11,6 @@
 extern "C" {
 #endif
 
-#define aset_stage_material ASET_LAYOUT(aset_stage_material)
-#define aset_stage_emit ASET_LAYOUT(aset_stage_emit)
-
 /* The axis that points upwards. */
 typedef enum aset_up { ASET_UP_Y, ASET_UP_Z } aset_up;
 

@@ -57,11 +57,7 @@ static void settle_bin(aset_baker *b, uint32_t slot) {
 }
 
 /* After some were emptied: every search must find its key again. It starts behind an empty slot, where no run of bins wraps. */
-static void settle_bins(aset_baker *b) {
-    uint32_t start = 0;
-    while (start < b->capacity && b->keys[start] != BIN_EMPTY) {
-        start++;
-    }
+static void settle_bins(aset_baker *b, uint32_t start) {
     for (uint32_t i = 1; i < b->capacity; i++) {
         uint32_t slot = start + i < b->capacity ? start + i : start + i - b->capacity;
         if (b->keys[slot] != BIN_EMPTY) {
@@ -73,7 +69,10 @@ static void settle_bins(aset_baker *b) {
 /* Lowers the ceiling until half of the bins are free. False: one layer alone is too much. */
 static bool lower_ceiling(aset_baker *b) {
     uint32_t in_layer[LAYERS_MAX] = {0};
-    uint32_t ceiling = b->floor_layer + 1, kept;
+    uint32_t ceiling = b->floor_layer + 1, kept, start = 0;
+    while (b->keys[start] != BIN_EMPTY) { /* before any is emptied: no run of bins goes across it */
+        start++;
+    }
     for (uint32_t i = 0; i < b->capacity; i++) {
         if (b->keys[i] != BIN_EMPTY) {
             in_layer[layer_of(b, b->keys[i])]++;
@@ -92,7 +91,7 @@ static bool lower_ceiling(aset_baker *b) {
             b->keys[i] = BIN_EMPTY;
         }
     }
-    settle_bins(b);
+    settle_bins(b, start);
     b->n_bins = kept;
     uint32_t below = ceiling * b->blocks[0] * b->blocks[1];
     memset(b->marks + below, 0, (n_all_blocks(b) - below) * sizeof *b->marks);

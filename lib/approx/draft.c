@@ -309,7 +309,7 @@ static aset_status refuse(const char *sentence, const char **why) {
 
 aset_status aset_draft_open(aset_draft *draft, const uint32_t *words, size_t n_words, aset_arena *arena, const char **why) {
     aset_draft opened;
-    if (draft == NULL || words == NULL || arena == NULL) {
+    if (draft == NULL || words == NULL || arena == NULL || (uintptr_t)words % sizeof *words != 0) {
         return ASET_ERR_ARGUMENT;
     }
     const char *wrong = check_header(words, n_words);

@@ -376,7 +376,7 @@ static bool collect_by_sorting(number_set *set, const aset_baker *b, bool prints
     for (uint32_t i = 0; i < b->n_raw; i++) {
         if (filled == room) {
             filled = sort_unique(list, filled);
-            if (filled > room - room / 4) {
+            if (filled >= room - room / 4) { /* with no room at all, too */
                 return false;
             }
         }
