@@ -155,6 +155,9 @@ hp9000: $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## draw the paper's figures 
 methods: $(BUILD)/aset ## every method's draft of gears and snow in one sheet, and a table of all methods on all scenes
 	bash tools/methods.sh $(BUILD)/aset $(BUILD)/methods
 
+ladder: $(BUILD)/aset ## what a cell may remember, as pictures and as a table (ARGS="MODEL.obj ..." adds models; minutes)
+	bash tools/ladder.sh $(BUILD)/aset $(BUILD)/ladder $(ARGS)
+
 method-costs: $(BUILD)/aset ## what a step of each method costs, in instructions (needs valgrind): DESIGN.md's table
 	@bash tools/costs.sh $(BUILD)/aset $(BUILD)/costs
 
@@ -216,5 +219,5 @@ help: ## show this text
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
 .PHONY: all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
-  hp9000 methods method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
+  hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

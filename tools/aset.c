@@ -22,6 +22,9 @@ static const tool_command commands[] = {
     {"plan", "the best settings for a scene within a budget", command_plan},
     {"sheet", "pictures side by side on one, with labels", command_sheet},
     {"trade", "speed, memory and error of many settings, measured", command_trade},
+    {"bake", "a model as a finished draft: a binary file or a C header", command_bake},
+    {"join", "pieces of a picture, one under the other", command_join},
+    {"thumb", "a thumbnail of every model in a folder", command_thumb},
 };
 #define N_COMMANDS (sizeof commands / sizeof commands[0])
 

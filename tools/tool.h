@@ -36,6 +36,9 @@ int command_tables(int argc, char **argv);
 int command_plan(int argc, char **argv);
 int command_sheet(int argc, char **argv);
 int command_trade(int argc, char **argv);
+int command_bake(int argc, char **argv);
+int command_join(int argc, char **argv);
+int command_thumb(int argc, char **argv);
 
 /* --- error.c --- */
 

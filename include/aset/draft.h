@@ -26,7 +26,7 @@ extern "C" {
 
 /*
  * Objects that are far larger than the rest (a ground) spoil the slices and look crude as facets: up to so many are kept
- * exact beside the cells, of up to so many points each.
+ * exact beside the cells, of up to so many points each; a patch among them is kept without its normals.
  */
 #define ASET_KEPT_MAX 16u
 #define ASET_KEPT_POINTS_MAX 8u
@@ -48,8 +48,9 @@ typedef struct aset_draft {
 typedef struct aset_bake_options {
     uint32_t divisions[3]; /* on x, y, z, 1 to ASET_BAKE_DIVISIONS_MAX each; all 0: cubic voxels, as many as bytes allow, at
                               most 128 on the longest axis */
-    size_t bytes;          /* the most that the bake may take of the arena; 0: ASET_BYTES_BAKE of the divisions, or what is
-                              free if that is less. Fewer bytes cost more passes over the source, not quality */
+    size_t bytes;          /* the most that the bake may take of the arena; 0: ASET_BYTES_BAKE of the divisions and the stage,
+                              or more if the model turns out to need it, or what is free if that is less. Fewer bytes cost
+                              more passes over the source; below 512 kB also textures of cells with mixed materials */
     bool keep_none;        /* no object is kept exact */
 } aset_bake_options;
 

@@ -20,6 +20,8 @@
 
 /* An object is kept exact if its box's diagonal is at least this part of the scene's. */
 #define KEPT_DIAGONAL R(0.25)
+/* So that the inverse of a column's size is a number in float, and of a ray's, too. */
+#define LEAST_SLACK R(1e-30)
 #define AUTO_LONGEST_MAX 128u
 #define AUTO_LONGEST_MIN 8u
 /* Automatic divisions: bytes of bake for each square of the longest axis' divisions. */
@@ -56,7 +58,7 @@ static void settle_bin(aset_baker *b, uint32_t slot) {
     }
 }
 
-/* After some were emptied: every search must find its key again. It starts behind an empty slot, where no run of bins wraps. */
+/* After some were emptied: every search must find its key again. start: was empty before that, too, so no run of bins crosses it. */
 static void settle_bins(aset_baker *b, uint32_t start) {
     for (uint32_t i = 1; i < b->capacity; i++) {
         uint32_t slot = start + i < b->capacity ? start + i : start + i - b->capacity;
@@ -69,13 +71,12 @@ static void settle_bins(aset_baker *b, uint32_t start) {
 /* Lowers the ceiling until half of the bins are free. False: one layer alone is too much. */
 static bool lower_ceiling(aset_baker *b) {
     uint32_t in_layer[LAYERS_MAX] = {0};
-    uint32_t ceiling = b->floor_layer + 1, kept, start = 0;
-    while (b->keys[start] != BIN_EMPTY) { /* before any is emptied: no run of bins goes across it */
-        start++;
-    }
+    uint32_t ceiling = b->floor_layer + 1, kept, empty = 0;
     for (uint32_t i = 0; i < b->capacity; i++) {
         if (b->keys[i] != BIN_EMPTY) {
             in_layer[layer_of(b, b->keys[i])]++;
+        } else {
+            empty = i; /* there is one: an eighth is */
         }
     }
     kept = in_layer[b->floor_layer];
@@ -91,7 +92,7 @@ static bool lower_ceiling(aset_baker *b) {
             b->keys[i] = BIN_EMPTY;
         }
     }
-    settle_bins(b, start);
+    settle_bins(b, empty);
     b->n_bins = kept;
     uint32_t below = ceiling * b->blocks[0] * b->blocks[1];
     memset(b->marks + below, 0, (n_all_blocks(b) - below) * sizeof *b->marks);
@@ -180,6 +181,7 @@ static void add_sample(aset_baker *b, sheet *s, int32_t i, int32_t j) {
 }
 
 static int64_t to_units(aset_real slope) {
+    slope = slope > -1 ? (slope < 1 ? slope : 1) : -1; /* or no number, if the source gives others than it measured */
     return (int64_t)(slope * BIN_UNIT + (slope < 0 ? R(-0.5) : R(0.5)));
 }
 
@@ -775,7 +777,7 @@ static void place_cells(aset_baker *b) {
     }
     aset_vec3 extent = vec_sub(high, low);
     aset_real slack = R(1e-3) * vec_largest(extent) + 16 * REAL_UNIT * real_max(vec_largest(low), vec_largest(high));
-    slack = slack > 0 ? slack : 1;
+    slack = slack > LEAST_SLACK ? slack : vec_largest(extent) > 0 ? LEAST_SLACK : 1;
     for (int a = 0; a < 3; a++) {
         aset_real grown = vec_at(&extent, a) + 2 * slack / 16;
         b->origin[a] = float_of_word(word_of_float(vec_at(&low, a) - slack / 16));
@@ -845,8 +847,9 @@ static size_t need_at_most(const aset_baker *b) {
 
 /* The most bytes that the region may take. */
 static size_t room_for_region(const aset_baker *b) {
-    size_t left = b->arena->size - b->arena->used;
-    return (b->options.bytes > 0 && b->options.bytes < left ? b->options.bytes : left) / ASET_ALIGN * ASET_ALIGN;
+    size_t left = b->arena->size - b->arena->used, taken = b->arena->used - b->mark.used, most = b->options.bytes;
+    most = most > taken ? most - taken : 0;
+    return (b->options.bytes > 0 && most < left ? most : left) / ASET_ALIGN * ASET_ALIGN;
 }
 
 /* The region, and in it everything for the divisions; wanted: its bytes, 0 for as many as usual. */
@@ -908,6 +911,9 @@ static aset_status bake_again(aset_baker *b, size_t need) {
 /* The stage takes its memory when all its counts are known; its entities come with the next pass. */
 static aset_status start_stage(aset_baker *b) {
     b->report.kept = b->counter.counts.objects;
+    if (b->report.kept != b->n_kept) {
+        return ASET_ERR_GEOMETRY; /* not the same source as in the first pass */
+    }
     aset_status status = aset_scene_init(&b->stage, b->arena, &b->counter.counts);
     if (status == ASET_OK) {
         b->stage_sink = aset_scene_sink(&b->stage);
@@ -995,7 +1001,7 @@ aset_status aset_baker_pass(aset_baker *baker, bool *again) {
     if (baker == NULL || again == NULL) {
         return status;
     }
-    baker->report.passes++;
+    baker->counter.outline.open = false;
     switch (baker->phase) {
     case PHASE_MEASURE: status = end_measuring(baker); break;
     case PHASE_FIT:
@@ -1004,11 +1010,15 @@ aset_status aset_baker_pass(aset_baker *baker, bool *again) {
         status = start_stage(baker);
         break;
     case PHASE_BAKE: status = end_baking(baker); break;
-    default: break;
+    default: *again = false; return status; /* whatever it had is no longer ours to release */
     }
+    baker->report.passes++;
     if (status != ASET_OK) {
         aset_arena_release(baker->arena, &baker->mark);
         baker->phase = PHASE_FAILED;
+    }
+    if (baker->phase == PHASE_FAILED || baker->phase == PHASE_DONE) {
+        baker->failure = ASET_ERR_ARGUMENT; /* of every entity that still comes */
     }
     *again = status == ASET_OK && baker->phase != PHASE_DONE;
     return status;

@@ -98,14 +98,14 @@ static const char *check_header(const uint32_t *words, size_t n_words) {
             return "a draft with divisions or a box that cannot be";
         }
     }
-    if (words[WORD_KEPT] > ASET_KEPT_MAX || words[WORD_LIGHTS] > n_words || words[WORD_KEPT_WORDS] > n_words) {
-        return "a draft with more lights or exact objects than it can have";
+    if (words[WORD_FOOTPRINTS] > 65536 || words[WORD_KEPT] > ASET_KEPT_MAX || words[WORD_LIGHTS] > n_words || words[WORD_KEPT_WORDS] > n_words) {
+        return "a draft with more lights, footprints or exact objects than it can have";
     }
     return NULL;
 }
 
 static const char *check_blocks(const aset_draft *d) {
-    uint32_t n_all = d->blocks[0] * d->blocks[1] * d->blocks[2], n = 0, next = 0;
+    uint32_t n_all = d->blocks[0] * d->blocks[1] * d->blocks[2], n = 0, next = 0, in_voxel = 0;
     for (uint32_t i = 0; i < (n_all + 31) / 32; i++) {
         uint32_t beyond = i * 32 + 32 > n_all ? 0xffffffffu << (n_all & 31u) : 0;
         if (d->rank[i] != n || (d->map[i] & beyond) != 0) {
@@ -123,7 +123,12 @@ static const char *check_blocks(const aset_draft *d) {
             return "a draft whose blocks have no facets";
         }
         for (; next < end; next++) {
-            voxels -= starts_bit(d->starts, next);
+            bool starts = starts_bit(d->starts, next);
+            voxels -= starts;
+            in_voxel = starts ? 1 : in_voxel + 1;
+            if (in_voxel > 6) { /* rays have room for one on each side */
+                return "a draft with a voxel of more than six facets";
+            }
         }
         if (voxels != 0) {
             return "a draft whose voxels have no facets";
@@ -268,7 +273,7 @@ static aset_status read_kept(const uint32_t *w, uint32_t left, uint32_t *n, cons
     return ASET_ERR_UNSUPPORTED;
 }
 
-static aset_status read_stage(const aset_draft *draft, const aset_sink *sink) {
+aset_status draft_read_stage(const aset_draft *draft, const aset_sink *sink) {
     const uint32_t *words = draft->words, *w = draft->textures + (size_t)draft->n_textures * TEXTURE_WORDS;
     uint32_t left = words[WORD_KEPT_WORDS];
     aset_status status = read_view(words, sink);
@@ -289,13 +294,13 @@ static aset_status read_stage(const aset_draft *draft, const aset_sink *sink) {
 static aset_status make_stage(aset_draft *draft, aset_arena *arena) {
     aset_counter counter;
     aset_sink sink = aset_counter_sink(&counter);
-    aset_status status = read_stage(draft, &sink);
+    aset_status status = draft_read_stage(draft, &sink);
     if (status == ASET_OK) {
         status = aset_scene_init(&draft->stage, arena, &counter.counts);
     }
     if (status == ASET_OK) {
         sink = aset_scene_sink(&draft->stage);
-        status = read_stage(draft, &sink);
+        status = draft_read_stage(draft, &sink);
     }
     return status;
 }

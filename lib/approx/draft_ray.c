@@ -26,6 +26,7 @@ typedef struct way {
     const aset_draft *draft;
     aset_real o[3], d[3], inverse[3]; /* inverse: 0 where the ray stands still */
     aset_real t_max, t_own;
+    aset_real moved; /* the ray's own t is so much larger */
     int step[3];
     draft_mode mode;
     bool any;
@@ -285,6 +286,28 @@ static bool clip(const way *w, aset_real *t_in, int *axis) {
     return *t_in <= t_out;
 }
 
+/* A box's diagonal so often: from farther away the rounding of o + t d would be seen. */
+#define FAR R(64)
+
+/* Brings a ray that comes from far away near the box, and clips it again: what is left of it is short. */
+static bool clip_near(way *w, aset_real *t, int *axis) {
+    aset_real size = 0;
+    for (int a = 0; a < 3; a++) {
+        size += w->draft->size[a] * (aset_real)(4 * w->draft->n[a]);
+    }
+    bool meets = clip(w, t, axis);
+    for (int i = 0; i < 3 && meets && *t > FAR * size; i++) {
+        aset_real step = *t - size;
+        for (int a = 0; a < 3; a++) {
+            w->o[a] += step * w->d[a];
+        }
+        w->moved += step;
+        w->t_max -= step;
+        meets = clip(w, t, axis);
+    }
+    return meets;
+}
+
 static bool go(way *w) {
     const aset_draft *draft = w->draft;
     const int32_t nx = (int32_t)draft->blocks[0], ny = (int32_t)draft->blocks[1], nz = (int32_t)draft->blocks[2];
@@ -294,7 +317,7 @@ static bool go(way *w) {
     aset_real t;
     int axis;
     lanes l;
-    if (draft->n_facets == 0 || !clip(w, &t, &axis)) {
+    if (draft->n_facets == 0 || !clip_near(w, &t, &axis)) {
         return false;
     }
     l.cell = 0;
@@ -324,6 +347,7 @@ static void way_make(way *w, const aset_draft *draft, draft_mode mode, aset_vec3
     w->draft = draft;
     w->mode = mode;
     w->t_max = t_max;
+    w->moved = 0;
     w->t_own = mode == DRAFT_PLANE ? OWN_DISTANCE * draft->column : 0;
     w->any = layers == NULL;
     w->layers = layers;
@@ -345,6 +369,9 @@ uint32_t draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *dr
     way w;
     way_make(&w, draft, mode, origin, direction, t_max, layers);
     (void)go(&w);
+    for (uint32_t i = 0; i < w.n; i++) {
+        layers[i].t += w.moved;
+    }
     *counts = w.counts;
     return w.n;
 }

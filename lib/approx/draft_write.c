@@ -95,7 +95,10 @@ static void harvest_voxel(aset_baker *b, uint32_t voxel) {
 void baker_harvest(aset_baker *b) {
     uint32_t in_layer = b->blocks[0] * b->blocks[1];
     if (b->single && b->n_materials > 0) {
-        b->textures[0] = b->only;
+        texture_sum sum; /* in the same units, and within the same bounds, as those of several materials */
+        memset(&sum, 0, sizeof sum);
+        texture_sum_add(&sum, &b->only);
+        b->textures[0] = texture_average(&sum);
         b->n_textures = 1;
     }
     for (uint32_t block = b->floor_layer * in_layer; block < b->ceiling_layer * in_layer; block++) {
@@ -211,8 +214,8 @@ static uint64_t count_words(const aset_baker *b, uint64_t n_facets, uint64_t n_s
 
 size_t baker_words_bound(const aset_baker *b, uint64_t n_facets) {
     uint64_t words = count_words(b, n_facets, n_facets, n_facets < 65535 ? n_facets : 65535);
-    return (size_t)(b->after - b->region) + (size_t)(words * sizeof(uint32_t)) + (size_t)n_facets * (sizeof(uint32_t) + sizeof(uint64_t)) +
-           65536;
+    uint64_t lists = n_facets * sizeof(uint32_t) + (n_facets < 65536 ? n_facets : 65536) * sizeof(uint32_t);
+    return (size_t)(b->after - b->region) + (size_t)(words * sizeof(uint32_t) + lists + n_facets * sizeof(uint64_t)) + 65536;
 }
 
 static void write_vec(uint32_t *w, aset_vec3 x) {
@@ -311,17 +314,42 @@ static void write_facets(uint32_t *words, const aset_draft *d, const aset_baker 
     starts[b->n_raw / 32] |= 1u << b->n_raw % 32;
 }
 
-static void write_kept(uint32_t *w, const aset_scene *stage) {
-    for (uint32_t i = 0; i < stage->counts.objects; i++) {
-        shape s = shape_of(stage, i);
-        uint32_t n = words_of_kept(stage, i) - KEPT_HEAD_WORDS;
-        bool is_outline = s.kind == KIND_POLYGON || s.kind == KIND_PATCH;
-        w[0] = s.kind | (is_outline ? n / (s.kind == KIND_PATCH ? 6 : 3) : 0) << 8 | (s.material->one_sided ? 1u : 0u) << 31;
-        write_material(w + 1, s.material);
-        for (uint32_t k = 0; k < n; k++) {
-            w[KEPT_HEAD_WORDS + k] = word_of_float(s.at[s.n - n + k]);
+/* One object; how many words. */
+static uint32_t write_object(uint32_t *w, const aset_scene *stage, uint32_t object) {
+    shape s = shape_of(stage, object);
+    uint32_t n = words_of_kept(stage, object) - KEPT_HEAD_WORDS;
+    bool is_outline = s.kind == KIND_POLYGON || s.kind == KIND_PATCH;
+    w[0] = s.kind | (is_outline ? n / (s.kind == KIND_PATCH ? 6 : 3) : 0) << 8 | (s.material->one_sided ? 1u : 0u) << 31;
+    write_material(w + 1, s.material);
+    for (uint32_t k = 0; k < n; k++) {
+        w[KEPT_HEAD_WORDS + k] = word_of_float(s.at[s.n - n + k]);
+    }
+    return KEPT_HEAD_WORDS + n;
+}
+
+/* Does the object a come after b? By their words: so the order in which they came does not matter. */
+static bool comes_after(const aset_scene *stage, uint32_t a, uint32_t b) {
+    uint32_t at_a[KEPT_WORDS_MAX], at_b[KEPT_WORDS_MAX];
+    uint32_t n_a = write_object(at_a, stage, a), n_b = write_object(at_b, stage, b);
+    for (uint32_t i = 0; i < n_a && i < n_b; i++) {
+        if (at_a[i] != at_b[i]) {
+            return at_a[i] > at_b[i];
         }
-        w += KEPT_HEAD_WORDS + n;
+    }
+    return n_a > n_b;
+}
+
+static void write_kept(uint32_t *w, const aset_scene *stage) {
+    uint32_t order[ASET_KEPT_MAX], n = stage->counts.objects; /* no more: start_stage sees to it */
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t k = i;
+        for (; k > 0 && comes_after(stage, order[k - 1], i); k--) {
+            order[k] = order[k - 1];
+        }
+        order[k] = i;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        w += write_object(w, stage, order[i]);
     }
 }
 
@@ -424,14 +452,33 @@ static uint32_t *take_words(aset_baker *b, size_t n_words) {
     return aset_arena_alloc(arena, n_words * sizeof(uint32_t), ASET_CATEGORY_CELLS);
 }
 
+/*
+ * The stage once more, in the memory that it has, as aset_draft_open will read it: in the words' order, and in double rounded
+ * as they are.
+ */
+static aset_status read_again(aset_scene *stage, const aset_draft *draft, const aset_scene *given) {
+    memset(stage, 0, sizeof *stage);
+    stage->limits = given->limits;
+    stage->objects = given->objects;
+    stage->coordinates = given->coordinates;
+    stage->materials = given->materials;
+    stage->lights = given->lights;
+    aset_sink sink = aset_scene_sink(stage);
+    return draft_read_stage(draft, &sink);
+}
+
 aset_status aset_baker_finish(aset_draft *draft, aset_baker *baker) {
     if (draft == NULL || baker == NULL || baker->phase != PHASE_DONE) {
         return ASET_ERR_ARGUMENT;
     }
     memset(draft, 0, sizeof *draft);
     (void)draft_bind(draft, take_words(baker, baker->n_words), baker->n_words);
-    draft->stage = baker->stage;
     baker->phase = PHASE_FAILED;
+    aset_status status = read_again(&draft->stage, draft, &baker->stage);
+    if (status != ASET_OK) {
+        aset_arena_release(baker->arena, &baker->mark);
+        return status;
+    }
     baker->report.facets = draft->n_facets;
     baker->report.textures = draft->n_textures;
     return ASET_OK;

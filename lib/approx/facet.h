@@ -44,7 +44,7 @@ enum {
     WORDS_HEADER = 40
 };
 
-enum { TEXTURE_WORDS = 8, LIGHT_WORDS = 7, KEPT_HEAD_WORDS = 1 + TEXTURE_WORDS };
+enum { TEXTURE_WORDS = 8, LIGHT_WORDS = 7, KEPT_HEAD_WORDS = 1 + TEXTURE_WORDS, KEPT_WORDS_MAX = KEPT_HEAD_WORDS + 6 * ASET_KEPT_POINTS_MAX };
 
 #define LIGHT_HAS_COLOUR 1u
 #define LIGHT_DIRECTIONAL 2u
@@ -68,7 +68,7 @@ typedef struct facet {
 } facet;
 
 static inline uint32_t word_of_float(aset_real x) {
-    float f = (float)x;
+    float f = (float)x + 0.0f; /* -0 becomes 0: equal numbers, equal words */
     uint32_t word;
     memcpy(&word, &f, sizeof word);
     return word;
@@ -173,6 +173,9 @@ static inline bool starts_bit(const uint32_t *starts, uint32_t facet_number) {
 
 /* Sets what follows from the header's words: sizes and where the sections are. True: they end with the last word. */
 bool draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words);
+
+/* Gives the stage's entities to a sink. */
+aset_status draft_read_stage(const aset_draft *draft, const aset_sink *sink);
 
 aset_material draft_material(const aset_draft *draft, uint32_t texture);
 

@@ -1,0 +1,740 @@
+/*
+ * test_draft.c - drafts opened from words, good and broken; rays and pictures of them.
+ */
+#include "support/support.h"
+
+#if ASET_WITH_DRAFTS
+
+#include "approx/draft_ray.h"
+
+#define ROOM ((size_t)4 << 20)
+enum { SIDE = 40 };
+
+typedef struct drawn {
+    guarded memory;
+    aset_arena arena;
+    aset_draft draft;
+    aset_bake_report report;
+} drawn;
+
+static void bake(drawn *d, const model *m, uint32_t nx, uint32_t ny, uint32_t nz, bool keep_none) {
+    aset_baker *baker = malloc(sizeof *baker);
+    aset_bake_options options;
+    bool again = true;
+    memset(&options, 0, sizeof options);
+    options.divisions[0] = nx;
+    options.divisions[1] = ny;
+    options.divisions[2] = nz;
+    options.keep_none = keep_none;
+    d->memory = guarded_open(ROOM);
+    assert_int_equal(aset_arena_init(&d->arena, d->memory.block, d->memory.size), ASET_OK);
+    assert_int_equal(aset_baker_init(baker, &d->arena, &options), ASET_OK);
+    while (again) {
+        aset_sink sink = aset_baker_sink(baker);
+        assert_int_equal(model_emit(&sink, m), ASET_OK);
+        assert_int_equal(aset_baker_pass(baker, &again), ASET_OK);
+    }
+    assert_int_equal(aset_baker_finish(&d->draft, baker), ASET_OK);
+    d->report = baker->report;
+    free(baker);
+}
+
+static void drawn_close(drawn *d) {
+    guarded_close(&d->memory);
+}
+
+static aset_tracer tracer_of(const aset_draft *draft) {
+    aset_tracer tracer;
+    memset(&tracer, 0, sizeof tracer);
+    tracer.scene = &draft->stage;
+    tracer.draft = draft;
+    tracer.approx_kinds = ASET_ALL_KINDS;
+    return tracer;
+}
+
+static aset_view view_from(aset_vec3 from) {
+    aset_view view;
+    memset(&view, 0, sizeof view);
+    view.from = from;
+    view.up.z = 1;
+    view.up.x = R(0.1);
+    view.angle_deg = 45;
+    return view;
+}
+
+static aset_status draw(unsigned char *pixels, uint32_t side, const aset_tracer *tracer, const aset_view *view,
+                        aset_statistics *statistics) {
+    uint64_t block[ASET_DEPTH_DEFAULT * 8];
+    aset_arena arena;
+    aset_scratch scratch;
+    aset_picture picture;
+    memset(&picture, 0, sizeof picture);
+    picture.width = picture.height = side;
+    picture.format = ASET_RGBA8888;
+    picture.transparent = true;
+    picture.pixels = pixels;
+    picture.stride = 4 * (size_t)side;
+    assert_int_equal(aset_arena_init(&arena, block, sizeof block), ASET_OK);
+    assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
+    return aset_render_rows(tracer, view, &picture, 0, side, &scratch, statistics);
+}
+
+/* A model with a ground, reflecting things, two lights (one directional, one coloured) and a view. */
+static void model_of(model *m, random_state *r, uint32_t n, bool ground) {
+    (void)ground; /* of polygons */
+    model_random(m, r, n, 4, 0.5, 3);
+#if ASET_WITH_POLYGONS
+    if (ground) {
+        model_rectangle(m, dvec_real(dvec_make(-20, -20, -5)), dvec_real(dvec_make(40, 0, 0)),
+                        dvec_real(dvec_make(0, 40, 0)));
+    }
+#endif
+    m->lights[0].directional = true;
+    m->lights[1].has_colour = true;
+    m->lights[1].colour.r = R(0.7);
+    m->lights[1].colour.g = R(0.3);
+}
+
+/* --- opening --- */
+
+typedef struct opened {
+    uint32_t *words; /* a copy of exactly their length, so that reading beyond is seen by the sanitizers */
+    size_t n_words;
+    uint64_t block[2048];
+    aset_arena arena;
+    aset_draft draft;
+    const char *why;
+} opened;
+
+static void copy_words(opened *o, const uint32_t *words, size_t n_words) {
+    o->words = malloc(n_words * sizeof *words + (n_words == 0));
+    assert_non_null(o->words);
+    memcpy(o->words, words, n_words * sizeof *words);
+    o->n_words = n_words;
+}
+
+static aset_status open_copy(opened *o) {
+    o->why = NULL;
+    assert_int_equal(aset_arena_init(&o->arena, o->block, sizeof o->block), ASET_OK);
+    aset_status status = aset_draft_open(&o->draft, o->words, o->n_words, &o->arena, &o->why);
+    check(status == ASET_OK || o->arena.used == 0, "%d", (int)status);
+    check((status == ASET_ERR_SYNTAX) == (o->why != NULL), "%d", (int)status);
+    return status;
+}
+
+static void seal(opened *o) {
+    o->words[WORD_CHECK] = draft_checksum(o->words, o->n_words);
+}
+
+static void test_draft__opened_words_give_the_same_pictures(void **state) {
+    (void)state;
+    uint32_t kept = 0;
+    for (uint64_t i = 0; i < 12; i++) {
+        static unsigned char a[SIDE * SIDE * 4], b[SIDE * SIDE * 4];
+        random_state r = random_start(seed_of(i));
+        model m;
+        drawn d;
+        opened *o = malloc(sizeof *o);
+        aset_statistics before = {0}, after = {0};
+        model_of(&m, &r, i < 6 ? 100 : 14, i % 2 == 0);
+        bake(&d, &m, 12, 10, 14, false);
+        kept += d.report.kept;
+        copy_words(o, d.draft.words, d.draft.n_words);
+        assert_int_equal(open_copy(o), ASET_OK);
+        aset_tracer first = tracer_of(&d.draft), second = tracer_of(&o->draft);
+        first.draft_sides = second.draft_sides = i % 3 == 0;
+        aset_view view = view_from(dvec_real(dvec_make(9, 6, 4)));
+        assert_int_equal(draw(a, SIDE, &first, &view, &before), ASET_OK);
+        assert_int_equal(draw(b, SIDE, &second, &view, &after), ASET_OK);
+#if ASET_REAL_BITS == 32
+        check(memcmp(a, b, sizeof a) == 0, SEED, r.seed);
+        check(memcmp(&before, &after, sizeof before) == 0, SEED, r.seed);
+#else
+        int differing = 0; /* the stage's numbers are floats in the words: shadows' and kept objects' edges move a little */
+        for (size_t k = 0; k < sizeof a; k++) {
+            differing += abs(a[k] - b[k]) > 1;
+        }
+        check(differing * 50 < SIDE * SIDE * 4, SEED ": %d", r.seed, differing);
+#endif
+        free(o->words);
+        free(o);
+        drawn_close(&d);
+        model_free(&m);
+    }
+    assert_true(kept > 12);
+}
+
+/* Everything that is drawn from a draft, a little of each: nothing may be read outside, nothing may go on forever. */
+static void use(const aset_draft *draft, random_state *r) {
+    static unsigned char pixels[5 * 5 * 4];
+    aset_tracer tracer = tracer_of(draft);
+    aset_view view = view_from(random_in_cube(r, 12));
+    aset_statistics statistics = {0};
+    for (int sides = 0; sides < 2; sides++) {
+        tracer.draft_sides = sides != 0;
+        aset_status status = draw(pixels, 5, &tracer, &view, &statistics);
+        check(status == ASET_OK || status == ASET_ERR_ARGUMENT || status == ASET_ERR_GEOMETRY, SEED ": %d", r->seed,
+              (int)status);
+        for (int i = 0; i < 10; i++) {
+            aset_ray ray = random_ray_from(r, i % 2 == 0 ? 4 : 20);
+            aset_hit hit;
+            bool found;
+            if (i % 2 == 1) {
+                ray.direction.x = -ray.origin.x;
+                ray.direction.y = -ray.origin.y;
+                ray.direction.z = -ray.origin.z;
+            }
+            assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, true, NULL), ASET_OK);
+            if (found && hit.object == ASET_NO_OBJECT) {
+                assert_true(hit.cell < draft->n_facets);
+                (void)aset_draft_texture(draft, hit.cell);
+            }
+            assert_int_equal(aset_any_hit(&found, &tracer, &ray, true, NULL), ASET_OK);
+        }
+    }
+}
+
+static uint32_t pattern(uint32_t word, int k, random_state *r) {
+    if (k < 32) {
+        return word ^ UINT32_C(1) << k;
+    }
+    switch (k) {
+    case 32: return ~word;
+    case 33: return 0;
+    case 34: return UINT32_MAX;
+    case 35: return word + 1;
+    case 36: return word - 1;
+    case 37: return 0x7f800000u; /* infinity */
+    case 38: return 0x7fc00000u; /* not a number */
+    case 39: return (uint32_t)random_next(r);
+    case 40: return word ^ 3u << random_below(r, 31);
+    case 41: return word << 1;
+    case 42: return word >> 1;
+    default: return word ^ (uint32_t)(random_next(r) & random_next(r) & random_next(r));
+    }
+}
+
+static void test_draft__every_word_changed_is_refused_or_harmless(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 3; i++) {
+        random_state r = random_start(seed_of(20 + i));
+        model m;
+        drawn d;
+        opened *o = malloc(sizeof *o);
+        uint32_t refused = 0, drawn_anyway = 0;
+        model_of(&m, &r, i == 0 ? 60 : 6, true);
+        bake(&d, &m, 5, 4, 6, i == 0);
+        copy_words(o, d.draft.words, d.draft.n_words);
+        for (size_t w = 0; w < o->n_words; w++) {
+            uint32_t whole = o->words[w], sum = o->words[WORD_CHECK];
+            for (int k = 0; k < 46; k++) {
+                o->words[w] = pattern(whole, k, &r);
+                if (o->words[w] == whole) {
+                    continue;
+                }
+                if (k % 8 == 0 && w != WORD_CHECK) { /* without a fitting check sum it is refused whatever it is */
+                    check(open_copy(o) == ASET_ERR_SYNTAX, SEED ", word %zu", r.seed, w);
+                }
+                if (w != WORD_CHECK) {
+                    seal(o);
+                }
+                if (open_copy(o) == ASET_OK) {
+                    drawn_anyway++;
+                    use(&o->draft, &r);
+                } else {
+                    refused++;
+                }
+                o->words[WORD_CHECK] = sum;
+            }
+            o->words[w] = whole;
+        }
+        check(refused > 1000 && drawn_anyway > 1000, SEED ": %" PRIu32 ", %" PRIu32, r.seed, refused, drawn_anyway);
+        free(o->words);
+        free(o);
+        drawn_close(&d);
+        model_free(&m);
+    }
+}
+
+/* Several words at once, the structure's above all. */
+static void test_draft__many_words_changed(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 30; i++) {
+        random_state r = random_start(seed_of(30 + i));
+        model m;
+        drawn d;
+        opened *o = malloc(sizeof *o);
+        model_of(&m, &r, 40, true);
+        bake(&d, &m, 6, 6, 6, false);
+        copy_words(o, d.draft.words, d.draft.n_words);
+        for (int k = 0; k < 400; k++) {
+            memcpy(o->words, d.draft.words, o->n_words * sizeof *o->words);
+            uint32_t changes = 1 + random_below(&r, 4), spread = k % 2 == 0 ? (uint32_t)o->n_words : WORDS_HEADER + 60;
+            for (uint32_t c = 0; c < changes; c++) {
+                size_t w = 4 + random_below(&r, spread - 4);
+                o->words[w] = pattern(o->words[w], (int)random_below(&r, 46), &r);
+            }
+            seal(o);
+            if (open_copy(o) == ASET_OK) {
+                use(&o->draft, &r);
+            }
+        }
+        free(o->words);
+        free(o);
+        drawn_close(&d);
+        model_free(&m);
+    }
+}
+
+/* The bits that start voxels are moved, their number kept: a voxel of too many facets is refused. */
+static void test_draft__a_voxel_has_six_facets_at_most(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(65));
+    model m;
+    drawn d;
+    opened *o = malloc(sizeof *o);
+    model_of(&m, &r, 200, false);
+    bake(&d, &m, 4, 4, 4, true);
+    copy_words(o, d.draft.words, d.draft.n_words);
+    uint32_t *starts = o->words + (d.draft.starts - d.draft.words), n = d.draft.n_facets, voxels = d.report.voxels;
+    assert_int_equal(d.draft.n_blocks, 1);
+    assert_true(n > voxels + 8);
+    memset(starts, 0, (n / 32 + 1) * sizeof *starts);
+    for (uint32_t i = 0; i < voxels; i++) {
+        starts[i / 32] |= 1u << i % 32; /* all at the start, so that the last voxel gets what is left */
+    }
+    starts[n / 32] |= 1u << n % 32;
+    seal(o);
+    aset_status status = open_copy(o);
+    assert_int_equal(status, ASET_ERR_SYNTAX);
+    free(o->words);
+    free(o);
+    drawn_close(&d);
+    model_free(&m);
+}
+
+static void test_draft__cut_off_anywhere(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(70));
+    model m;
+    drawn d;
+    model_of(&m, &r, 20, true);
+    bake(&d, &m, 5, 5, 5, false);
+    for (size_t n = 0; n < d.draft.n_words + 3; n++) {
+        opened *o = malloc(sizeof *o);
+        size_t have = n < d.draft.n_words ? n : d.draft.n_words;
+        copy_words(o, d.draft.words, have);
+        if (n > have) {
+            o->words = realloc(o->words, n * sizeof *o->words);
+            memset(o->words + have, 0, (n - have) * sizeof *o->words);
+            o->n_words = n;
+        }
+        aset_status expected = n == d.draft.n_words ? ASET_OK : ASET_ERR_SYNTAX;
+        check(open_copy(o) == expected, "%zu words of %zu", n, d.draft.n_words);
+        if (n > WORD_CHECK) {
+            o->words[WORD_N_WORDS] = (uint32_t)n;
+            seal(o);
+            check(open_copy(o) == expected, "%zu words of %zu, sealed", n, d.draft.n_words);
+        }
+        free(o->words);
+        free(o);
+    }
+    drawn_close(&d);
+    model_free(&m);
+}
+
+static void test_draft__sentences_and_arguments(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(80));
+    model m;
+    drawn d;
+    opened *o = malloc(sizeof *o);
+    model_of(&m, &r, 20, true);
+    bake(&d, &m, 5, 5, 5, false);
+    copy_words(o, d.draft.words, d.draft.n_words);
+    assert_int_equal(open_copy(o), ASET_OK);
+    aset_arena none;
+    assert_int_equal(aset_draft_open(NULL, o->words, o->n_words, &o->arena, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_draft_open(&o->draft, NULL, o->n_words, &o->arena, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_draft_open(&o->draft, o->words, o->n_words, NULL, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_draft_open(&o->draft, o->words, 0, &o->arena, NULL), ASET_ERR_SYNTAX);
+    assert_int_equal(aset_arena_init(&none, NULL, 0), ASET_OK);
+    assert_int_equal(aset_draft_open(&o->draft, o->words, o->n_words, &none, NULL), ASET_ERR_NOMEM);
+    assert_true(none.missing > 0);
+    guarded exact = guarded_open(none.missing);
+    aset_arena arena;
+    assert_int_equal(aset_arena_init(&arena, exact.block, exact.size), ASET_OK);
+    assert_int_equal(aset_draft_open(&o->draft, o->words, o->n_words, &arena, NULL), ASET_OK);
+    guarded_close(&exact);
+    for (size_t k = 1; k < 4; k++) {
+        char *moved = malloc(o->n_words * 4 + 4);
+        memcpy(moved + k, o->words, o->n_words * 4);
+        assert_int_equal(aset_draft_open(&o->draft, (const uint32_t *)(void *)(moved + k), o->n_words, &o->arena, NULL),
+                         ASET_ERR_ARGUMENT);
+        free(moved);
+    }
+    for (size_t i = 0; i < o->n_words; i++) {
+        uint32_t w = o->words[i];
+        o->words[i] = w >> 24 | (w >> 8 & 0xff00u) | (w << 8 & 0xff0000u) | w << 24;
+    }
+    assert_int_equal(open_copy(o), ASET_ERR_SYNTAX);
+    assert_non_null(strstr(o->why, "byte order"));
+    o->words[WORD_MAGIC] = FACET_MAGIC;
+    o->words[WORD_VERSION] = FACET_VERSION + 1;
+    assert_int_equal(open_copy(o), ASET_ERR_SYNTAX);
+    assert_non_null(strstr(o->why, "version"));
+    free(o->words);
+    free(o);
+    drawn_close(&d);
+    model_free(&m);
+}
+
+static void test_draft__garbage(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 4000; i++) {
+        random_state r = random_start(seed_of(100 + i));
+        uint32_t n = 40 + random_below(&r, 200);
+        opened *o = malloc(sizeof *o);
+        o->words = malloc(n * sizeof *o->words);
+        o->n_words = n;
+        for (uint32_t k = 0; k < n; k++) {
+            o->words[k] = i % 2 == 0 ? (uint32_t)random_next(&r) : random_below(&r, 1 + random_below(&r, 12));
+        }
+        if (i % 4 > 0) {
+            o->words[WORD_MAGIC] = FACET_MAGIC;
+            o->words[WORD_VERSION] = FACET_VERSION;
+            o->words[WORD_N_WORDS] = n;
+            for (int a = 0; a < 3; a++) {
+                o->words[WORD_N + a] = 1 + random_below(&r, 9);
+                o->words[WORD_SIZE + a] = o->words[WORD_LOW + a] = word_of_float(1);
+            }
+            seal(o);
+        }
+        if (open_copy(o) == ASET_OK) {
+            use(&o->draft, &r);
+        }
+        free(o->words);
+        free(o);
+    }
+}
+
+/* --- rays --- */
+
+static void test_draft__layers_are_in_order_and_cover_once(void **state) {
+    (void)state;
+    uint32_t met = 0, several = 0;
+    for (uint64_t i = 0; i < 8; i++) {
+        random_state r = random_start(seed_of(300 + i));
+        model m;
+        drawn d;
+        model_of(&m, &r, 150, false);
+        bake(&d, &m, 14, 15, 16, true);
+        for (int k = 0; k < 4000; k++) {
+            draft_layer layers[DRAFT_LAYERS_MAX];
+            draft_counts counts;
+            aset_vec3 from = random_in_cube(&r, 8), to = random_in_cube(&r, 4);
+            aset_vec3 direction = vec_unit(vec_sub(to, from));
+            aset_real t_max = k % 3 == 0 ? (aset_real)random_between(&r, 0, 12) : REAL_INFINITY, before = 0, sum = 0;
+            draft_mode mode = k % 5 == 0 ? DRAFT_SIDE : DRAFT_PLANE;
+            uint32_t n = draft_layers(layers, &d.draft, mode, from, direction, t_max, &counts);
+            assert_true(n <= DRAFT_LAYERS_MAX);
+            for (uint32_t l = 0; l < n; l++) {
+                check(layers[l].t >= before && layers[l].t > 0 && layers[l].t < t_max, SEED ", ray %d", r.seed, k);
+                check(layers[l].cover > 0 && layers[l].facet < d.draft.n_facets, SEED ", ray %d", r.seed, k);
+                before = layers[l].t;
+                sum += layers[l].cover;
+            }
+            check(sum <= 1 + 4 * REAL_UNIT, SEED ", ray %d: %g", r.seed, k, (double)sum);
+            check(counts.nonempty <= counts.cells && (n == 0 || counts.nonempty > 0), SEED ", ray %d", r.seed, k);
+            met += n > 0;
+            several += n > 1;
+        }
+        drawn_close(&d);
+        model_free(&m);
+    }
+    assert_true(met > 1000 && several > 50);
+}
+
+/* Where something stops a shadow ray, something is met; where most of a ray is stopped by what faces it, a shadow ray is. */
+static void test_draft__any_agrees_with_closest(void **state) {
+    (void)state;
+    uint32_t solid = 0, passed = 0, blocked_by_nothing = 0, sides_differ = 0;
+    for (uint64_t i = 0; i < 6; i++) {
+        random_state r = random_start(seed_of(320 + i));
+        model m;
+        drawn d;
+        model_of(&m, &r, 120, i % 2 == 0);
+        bake(&d, &m, 16, 16, 16, i % 3 == 0);
+        aset_tracer tracer = tracer_of(&d.draft);
+        for (int k = 0; k < 5000; k++) {
+            aset_ray ray = random_ray_from(&r, k % 2 == 0 ? 12 : 4);
+            aset_hit hit;
+            bool any, closest;
+            ray.t_max = k % 4 == 0 ? (aset_real)random_between(&r, 0, 10) : REAL_INFINITY;
+            tracer.draft_sides = k % 3 == 0;
+            assert_int_equal(aset_any_hit(&any, &tracer, &ray, true, NULL), ASET_OK);
+            assert_int_equal(aset_closest_hit(&closest, &hit, &tracer, &ray, true, NULL), ASET_OK);
+            if (tracer.draft_sides) {
+                sides_differ += any != closest;
+            } else {
+                blocked_by_nothing += any && !closest;
+                bool faces = closest && vec_dot(hit.normal, ray.direction) < 0;
+                solid += faces;
+                passed += faces && !any;
+            }
+        }
+        drawn_close(&d);
+        model_free(&m);
+    }
+    check(blocked_by_nothing == 0, "%" PRIu32, blocked_by_nothing);
+    check(sides_differ == 0, "%" PRIu32, sides_differ);
+    check(solid > 1000 && passed * 20 < solid, "%" PRIu32 " of %" PRIu32 " shadow rays passed", passed, solid);
+}
+
+static void test_draft__odd_rays(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(340));
+    model m;
+    drawn d;
+    model_of(&m, &r, 100, true);
+    bake(&d, &m, 8, 8, 8, false);
+    aset_tracer tracer = tracer_of(&d.draft);
+    const aset_real odd[] = {R(NAN), REAL_INFINITY, -REAL_INFINITY};
+    bool found;
+    aset_hit hit;
+    for (int sides = 0; sides < 2; sides++) {
+        tracer.draft_sides = sides != 0;
+        for (int i = 0; i < 7; i++) {
+            for (size_t k = 0; k < COUNT_OF(odd); k++) {
+                aset_ray ray = {{9, 9, 9}, {-1, -1, -1}, REAL_INFINITY};
+                aset_real *places[7] = {&ray.origin.x, &ray.origin.y, &ray.origin.z, &ray.direction.x, &ray.direction.y,
+                                        &ray.direction.z, &ray.t_max};
+                *places[i] = odd[k];
+                aset_status expected = i == 6 && k > 0 ? ASET_OK : ASET_ERR_ARGUMENT;
+                assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, true, NULL), expected);
+                assert_int_equal(aset_any_hit(&found, &tracer, &ray, true, NULL), expected);
+            }
+        }
+        aset_ray still = {{0, 0, 0}, {0, 0, 0}, REAL_INFINITY};
+        assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &still, true, NULL), ASET_ERR_ARGUMENT);
+        /* Along slices, through corners, from on them, from inside, with components that hardly move. */
+        for (int k = 0; k < 30000; k++) {
+            aset_ray ray;
+            aset_vec3 to;
+            aset_real *from = &ray.origin.x, *target = &to.x, *direction = &ray.direction.x;
+            for (int a = 0; a < 3; a++) {
+                from[a] = d.draft.low[a] + d.draft.size[a] * (aset_real)random_below(&r, 33);
+                target[a] = d.draft.low[a] + d.draft.size[a] * 4 * (aset_real)random_below(&r, 9);
+                from[a] += random_chance(&r, 0.3) ? (aset_real)random_between(&r, -9, 9) : 0;
+                direction[a] = random_chance(&r, 0.3) ? 0 : target[a] - from[a];
+                direction[a] = random_chance(&r, 0.1) ? R(1e-30) : direction[a];
+            }
+            ray.t_max = REAL_INFINITY;
+            if (vec_largest(ray.direction) > 0) {
+                assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, true, NULL), ASET_OK);
+                check(!found || (hit.t > 0 && vec_finite(hit.point)), "ray %d", k);
+                assert_int_equal(aset_any_hit(&found, &tracer, &ray, true, NULL), ASET_OK);
+            }
+        }
+    }
+    drawn_close(&d);
+    model_free(&m);
+}
+
+#if ASET_WITH_SPHERES
+/* From very far a ball is still met, as long as the ray itself says so to within the ball. */
+static void test_draft__rays_from_far_away(void **state) {
+    (void)state;
+    const double distances[] = {10, 1e3, 1e5, 1e6};
+    random_state r = random_start(seed_of(350));
+    model m;
+    drawn d;
+    model_start(&m);
+    model_sphere(&m, vec(0, 0, 0), 1);
+    bake(&d, &m, 32, 32, 32, true);
+    aset_tracer tracer = tracer_of(&d.draft);
+    for (size_t i = 0; i < COUNT_OF(distances); i++) {
+        int missed = 0;
+        for (int k = 0; k < 3000; k++) {
+            aset_vec3 out = random_direction(&r), in = random_in_cube(&r, 0.3);
+            aset_ray ray;
+            aset_hit hit;
+            bool found;
+            ray.origin = vec_scale(out, (aset_real)distances[i]);
+            ray.direction = vec_sub(in, ray.origin);
+            ray.t_max = REAL_INFINITY;
+            assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, true, NULL), ASET_OK);
+            missed += !found;
+        }
+        check(missed * (distances[i] > 2e5 ? 3 : 100) <= 3000, "from %g: %d of 3000 missed", distances[i], missed);
+    }
+    drawn_close(&d);
+    model_free(&m);
+}
+#endif
+
+/* --- the tracer --- */
+
+static void test_draft__without_a_space_all_rays_must_be_approximate(void **state) {
+    (void)state;
+    static unsigned char pixels[SIDE * SIDE * 4];
+    random_state r = random_start(seed_of(360));
+    model m;
+    drawn d;
+    model_of(&m, &r, 60, true);
+    bake(&d, &m, 8, 8, 8, false);
+    aset_tracer tracer = tracer_of(&d.draft);
+    aset_view view = view_from(dvec_real(dvec_make(12, 5, 3)));
+    aset_ray ray = {{9, 9, 9}, {-1, -1, -1}, REAL_INFINITY};
+    aset_hit hit;
+    bool found;
+    assert_int_equal(draw(pixels, SIDE, &tracer, &view, NULL), ASET_OK);
+    assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, false, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_any_hit(&found, &tracer, &ray, false, NULL), ASET_ERR_ARGUMENT);
+    for (uint32_t kinds = 0; kinds < ASET_ALL_KINDS; kinds++) {
+        tracer.approx_kinds = kinds;
+        assert_int_equal(draw(pixels, SIDE, &tracer, &view, NULL), ASET_ERR_ARGUMENT);
+    }
+    tracer.approx_kinds = ASET_ALL_KINDS;
+    tracer.approx_depth = 1;
+    assert_int_equal(draw(pixels, SIDE, &tracer, &view, NULL), ASET_ERR_ARGUMENT);
+    tracer.approx_depth = 0;
+    tracer.draft = NULL;
+    assert_int_equal(draw(pixels, SIDE, &tracer, &view, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, true, NULL), ASET_ERR_ARGUMENT);
+    tracer.draft = &d.draft;
+    tracer.scene = NULL;
+    assert_int_equal(draw(pixels, SIDE, &tracer, &view, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, true, NULL), ASET_ERR_ARGUMENT);
+    drawn_close(&d);
+    model_free(&m);
+}
+
+/* Drafts for some rays beside a space for the others. */
+static void test_draft__beside_a_space(void **state) {
+    (void)state;
+    static unsigned char exact[SIDE * SIDE * 4], mixed[SIDE * SIDE * 4];
+    random_state r = random_start(seed_of(370));
+    model m;
+    drawn d;
+    stage s;
+    aset_space space;
+    aset_statistics e = {0}, x = {0};
+    model_of(&m, &r, 60, true);
+    bake(&d, &m, 24, 24, 24, false);
+    stage_open_model(&s, &m, ROOM);
+    stage_space(&s, &space, &aset_mset, 8, 8, 8);
+    aset_tracer tracer = stage_tracer(&s, &space);
+    aset_view view = view_from(dvec_real(dvec_make(12, 5, 3)));
+    assert_int_equal(draw(exact, SIDE, &tracer, &view, &e), ASET_OK);
+    tracer.draft = &d.draft;
+    assert_int_equal(draw(mixed, SIDE, &tracer, &view, &x), ASET_OK); /* no kinds: all exact */
+    assert_memory_equal(exact, mixed, sizeof exact);
+    assert_memory_equal(&e, &x, sizeof e);
+    tracer.approx_kinds = ASET_SHADOW;
+    memset(&x, 0, sizeof x);
+    assert_int_equal(draw(mixed, SIDE, &tracer, &view, &x), ASET_OK);
+    assert_int_equal(x.primary, e.primary);
+    assert_int_equal(x.primary_hit, e.primary_hit);
+    assert_true(x.approx_hits > 0 && e.approx_hits == 0);
+    stage_close(&s);
+    drawn_close(&d);
+    model_free(&m);
+}
+
+static void test_draft__statistics(void **state) {
+    (void)state;
+    static unsigned char pixels[SIDE * SIDE * 4];
+    random_state r = random_start(seed_of(380));
+    model m;
+    drawn d;
+    aset_statistics s = {0}, twice = {0};
+    model_of(&m, &r, 60, true);
+    bake(&d, &m, 16, 16, 16, false);
+    aset_tracer tracer = tracer_of(&d.draft);
+    aset_view view = view_from(dvec_real(dvec_make(12, 5, 3)));
+    assert_int_equal(draw(pixels, SIDE, &tracer, &view, &s), ASET_OK);
+    assert_int_equal(s.primary, SIDE * SIDE);
+    assert_true(s.primary_hit > 0 && s.primary_hit <= s.primary && s.shadow_hit <= s.shadow && s.shadow > 0);
+    assert_true(s.cells_visited >= s.nonempty_visited && s.nonempty_visited >= s.approx_hits && s.approx_hits > 0);
+    assert_true(s.approx_hits <= s.primary_hit + s.shadow_hit + s.secondary_hit);
+    assert_int_equal(s.curtailed, 0);
+    if (d.report.kept > 0) { /* every ray tests what is kept, and nothing else is tested */
+        assert_int_equal(s.tests, (s.primary + s.shadow + s.reflected + s.refracted) * d.report.kept);
+        assert_true(s.test_hits > 0 && s.test_hits <= s.tests);
+    }
+    twice = s;
+    assert_int_equal(draw(pixels, SIDE, &tracer, &view, &twice), ASET_OK);
+    assert_int_equal(twice.cells_visited, 2 * s.cells_visited);
+    assert_int_equal(twice.primary, 2 * s.primary);
+    drawn_close(&d);
+    model_free(&m);
+}
+
+/* All objects kept: no facets, and still a draft, the same as the scene. */
+static void test_draft__all_kept(void **state) {
+    (void)state;
+    static unsigned char exact[SIDE * SIDE * 4], kept[SIDE * SIDE * 4];
+    random_state r = random_start(seed_of(390));
+    model m;
+    drawn d;
+    stage s;
+    aset_space space;
+    model_random(&m, &r, 0, 4, 3, 3);
+    for (uint32_t i = 0; i < 5; i++) {
+#if ASET_WITH_SPHERES
+        model_sphere(&m, vec((aset_real)i, 0, (aset_real)(i % 2)), 1)->material = i % 6;
+#elif ASET_WITH_POLYGONS
+        model_rectangle(&m, vec((aset_real)i, 0, 0), vec(0, 1, 0), vec(0, 0, 1))->material = i % 6;
+#else
+        model_cone(&m, vec((aset_real)i, 0, 0), 1, vec((aset_real)i, 0, 1), 1)->material = i % 6;
+#endif
+    }
+    bake(&d, &m, 4, 4, 4, false);
+    assert_int_equal(d.report.kept, 5);
+    assert_int_equal(d.draft.n_facets, 0);
+    stage_open_model(&s, &m, ROOM);
+    stage_space(&s, &space, &aset_mset, 4, 4, 4);
+    aset_tracer of_scene = stage_tracer(&s, &space), of_draft = tracer_of(&d.draft);
+    of_scene.depth = of_draft.depth = 1;
+    s.scene.counts.lights = d.draft.stage.counts.lights = 0; /* the draft's shadow rays start a little farther away */
+    aset_view view = view_from(dvec_real(dvec_make(12, 5, 3)));
+    assert_int_equal(draw(exact, SIDE, &of_scene, &view, NULL), ASET_OK);
+    assert_int_equal(draw(kept, SIDE, &of_draft, &view, NULL), ASET_OK);
+    assert_memory_equal(exact, kept, sizeof exact);
+    stage_close(&s);
+    drawn_close(&d);
+    model_free(&m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_draft__opened_words_give_the_same_pictures),
+        cmocka_unit_test(test_draft__every_word_changed_is_refused_or_harmless),
+        cmocka_unit_test(test_draft__many_words_changed),
+        cmocka_unit_test(test_draft__a_voxel_has_six_facets_at_most),
+        cmocka_unit_test(test_draft__cut_off_anywhere),
+        cmocka_unit_test(test_draft__sentences_and_arguments),
+        cmocka_unit_test(test_draft__garbage),
+        cmocka_unit_test(test_draft__layers_are_in_order_and_cover_once),
+        cmocka_unit_test(test_draft__any_agrees_with_closest),
+        cmocka_unit_test(test_draft__odd_rays),
+#if ASET_WITH_SPHERES
+        cmocka_unit_test(test_draft__rays_from_far_away),
+#endif
+        cmocka_unit_test(test_draft__without_a_space_all_rays_must_be_approximate),
+        cmocka_unit_test(test_draft__beside_a_space),
+        cmocka_unit_test(test_draft__statistics),
+        cmocka_unit_test(test_draft__all_kept),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+#else
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_support__not_compiled)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+#endif
