@@ -75,8 +75,16 @@ $(BUILD)/aset: $(call objects,$(TOOL),obj) $(ARCHIVES)
 $(BUILD)/examples/%: examples/%.c $(wildcard examples/*.h) $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) -ffp-contract=off -Iinclude $(PNG_CFLAGS) \
-	  -o $@ $< $(ARCHIVES) $(PNG_LIBS) -lm
+	$(Q)$(CC) $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) -ffp-contract=off -Iinclude -I$(@D) \
+	  $(PNG_CFLAGS) -o $@ $< $(ARCHIVES) $(PNG_LIBS) -lm
+
+# The draft that the program on a microcontroller has in its flash.
+$(BUILD)/examples/flash: $(BUILD)/examples/flash_model.h
+$(BUILD)/examples/flash_model.h: $(BUILD)/aset
+	@mkdir -p $(@D)
+	$(call say,BAKE)
+	$(Q)$(BUILD)/aset scene skull -o $(@D)/skull.nff
+	$(Q)$(BUILD)/aset bake $(@D)/skull.nff --grid 40 --name model --quiet -o $@
 
 examples: $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## build the examples
 
@@ -108,6 +116,7 @@ test: $(addprefix $(BUILD)/tests/,$(TESTS) convert) $(BUILD)/aset all check-laye
 	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
 	  echo "== models.sh"; bash tests/models.sh $(BUILD)/aset $(BUILD)/tests/convert || failed="$$failed models.sh"; \
+	  echo "== bake.sh"; bash tests/bake.sh $(BUILD)/aset $(BUILD)/examples/flash "$(CC)" || failed="$$failed bake.sh"; \
 	  echo "== plan.sh"; bash tests/plan.sh $(BUILD)/aset "$(CC)" || failed="$$failed plan.sh"; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi; echo "all tests passed"
 

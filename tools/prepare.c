@@ -5,9 +5,11 @@
  */
 #include "prepare.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 const aset_method *const tool_methods[] = {&aset_mset, &aset_set,    &aset_grid,  &aset_octree,
                                             &aset_arts, &aset_excell, &aset_brute, NULL};
@@ -182,6 +184,17 @@ static aset_status fill_arena(prepared *p, const settings *s, tool_source *sourc
     return status == ASET_OK && p->is_drafted ? bake(p, s, source, told) : status;
 }
 
+/* The arena's block, and room for the threads' scratches. False after an error line. */
+static bool take_block(prepared *p, const settings *s) {
+    p->block = malloc(s->memory > 0 ? (size_t)s->memory : 1);
+    p->scratches = calloc(s->threads, sizeof *p->scratches);
+    if (p->block == NULL || p->scratches == NULL || aset_arena_init(&p->arena, p->block, (size_t)s->memory) != ASET_OK) {
+        tool_error(p->path, 0, "the machine has no block of %" PRIu64 " bytes", s->memory);
+        return false;
+    }
+    return true;
+}
+
 static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
     aset_counter counter;
     aset_sink sink = aset_counter_sink(&counter);
@@ -192,10 +205,7 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
     p->load_s = tool_seconds() - start;
     /* the SPD's rule: opaque surfaces are one-sided, but not in a scene with patches (the teapot) */
     source->one_sided_opaque = s->spd_rules && counter.counts.patches == 0;
-    p->block = malloc(s->memory > 0 ? (size_t)s->memory : 1);
-    p->scratches = calloc(s->threads, sizeof *p->scratches);
-    if (p->block == NULL || p->scratches == NULL || aset_arena_init(&p->arena, p->block, (size_t)s->memory) != ASET_OK) {
-        tool_error(source->path, 0, "the machine has no block of %" PRIu64 " bytes", s->memory);
+    if (!take_block(p, s)) {
         return false;
     }
     bool told = false;
@@ -215,17 +225,124 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
     return status == ASET_OK && choose_view(p, s);
 }
 
-bool prepare(prepared *p, const settings *s, const char *path) {
+/* ---- a baked draft, instead of a source ---- */
+
+/* The bytes of a file; 0 after an error line, as an empty one is none. */
+static uint64_t file_bytes(const char *path, FILE *file) {
+    struct stat status;
+    if (fstat(fileno(file), &status) != 0) {
+        tool_error(path, 0, "cannot be read: %s", strerror(errno));
+        return 0;
+    }
+    if (!S_ISREG(status.st_mode) || status.st_size == 0 || status.st_size % 4 != 0) {
+        tool_error(path, 0, "not a draft, expected a file whose bytes are a multiple of 4");
+        return 0;
+    }
+    return (uint64_t)status.st_size;
+}
+
+/* The file has the lowest byte of each word first, whatever the machine's order is. */
+static bool read_words(const char *path, FILE *file, uint32_t *words, size_t n_words) {
+    unsigned char *bytes = (unsigned char *)words;
+    if (fread(words, sizeof *words, n_words, file) != n_words) {
+        tool_error(path, 0, "cannot be read: %s", ferror(file) != 0 ? strerror(errno) : "it has become shorter");
+        return false;
+    }
+    for (size_t i = 0; i < n_words; i++, bytes += 4) {
+        words[i] = (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+    }
+    return true;
+}
+
+/* Scratches, the words and their stage in the arena. *told: it has failed and said so. */
+static aset_status fill_baked(prepared *p, const settings *s, FILE *file, size_t n_words, bool *told) {
+    aset_status status = ASET_OK;
+    const char *why = NULL;
+    for (uint32_t i = 0; i < s->threads && status == ASET_OK; i++) {
+        status = aset_scratch_init(&p->scratches[i], s->depth, &p->arena);
+    }
+    uint32_t *words = status == ASET_OK ? aset_arena_alloc(&p->arena, n_words * sizeof *words, ASET_CATEGORY_CELLS) : NULL;
+    if (words == NULL) {
+        return status == ASET_OK ? ASET_ERR_NOMEM : status;
+    }
+    *told = !read_words(p->path, file, words, n_words);
+    status = *told ? ASET_ERR_READ : aset_draft_open(&p->draft, words, n_words, &p->arena, &why);
+    if (why != NULL) {
+        tool_error(p->path, 0, "%s", why);
+        *told = true;
+    }
+    return status;
+}
+
+/* What would do is seen by opening it with more than that: a stage takes less than six times its words. */
+static void tell_baked_need(const prepared *p, const settings *s, FILE *file, size_t n_words) {
+    prepared more;
+    settings rich = *s;
+    bool told = false;
+    memset(&more, 0, sizeof more);
+    more.path = p->path;
+    rich.memory += (uint64_t)n_words * 24 + (uint64_t)s->threads * ASET_BYTES_SCRATCH(s->depth);
+    rewind(file);
+    if (take_block(&more, &rich)) {
+        aset_status status = fill_baked(&more, &rich, file, n_words, &told);
+        if (status == ASET_OK) {
+            tool_error(p->path, 0, "the draft needs %zu bytes, has %" PRIu64, more.arena.peak, s->memory);
+        } else if (!told) {
+            tool_error(p->path, 0, "%s", aset_status_text(status));
+        }
+    }
+    prepare_free(&more);
+}
+
+static bool open_baked(prepared *p, const settings *s, FILE *file) {
+    uint64_t size = file_bytes(p->path, file);
+    bool told = false;
+    if (size == 0 || !take_block(p, s)) {
+        return false;
+    }
+    if (size > SIZE_MAX / 32) {
+        tool_error(p->path, 0, "%" PRIu64 " bytes are too many for this machine", size);
+        return false;
+    }
+    aset_status status = fill_baked(p, s, file, (size_t)size / 4, &told);
+    if (status == ASET_ERR_NOMEM) {
+        tell_baked_need(p, s, file, (size_t)size / 4);
+    } else if (status != ASET_OK && !told) {
+        tool_error(p->path, 0, "%s", aset_status_text(status));
+    }
+    p->is_drafted = p->is_streamed = true;
+    p->counts = p->draft.stage.counts;
+    return status == ASET_OK && choose_view(p, s);
+}
+
+static bool prepare_baked(prepared *p, const settings *s) {
+    FILE *file = fopen(p->path, "rb");
+    double start = tool_seconds();
+    if (file == NULL) {
+        tool_error(p->path, 0, "cannot be opened: %s", strerror(errno));
+        return false;
+    }
+    bool done = open_baked(p, s, file);
+    (void)fclose(file);
+    p->load_s = tool_seconds() - start;
+    return done;
+}
+
+static bool prepare_source(prepared *p, const settings *s) {
     tool_source source;
-    memset(p, 0, sizeof *p);
-    p->path = path;
-    if (!tool_source_open(&source, path)) {
+    if (!tool_source_open(&source, p->path)) {
         return false;
     }
     tool_source_set(&source, s);
     bool done = prepare_from(p, s, &source);
     tool_source_close(&source);
-    if (!done) {
+    return done;
+}
+
+bool prepare(prepared *p, const settings *s, const char *path) {
+    memset(p, 0, sizeof *p);
+    p->path = path;
+    if (!(tool_has_extension(path, ".draft") ? prepare_baked(p, s) : prepare_source(p, s))) {
         prepare_free(p);
         return false;
     }

@@ -16,7 +16,8 @@
 
 static const char help[] =
     "aset render SCENE [-o OUT.png]: draws a scene exactly or approximately, in a fixed block of memory.\n"
-    "SCENE is an .nff file, a model (.obj, .stl, .ply), or - for NFF on standard input. Without -o the picture is drawn\n"
+    "SCENE is an .nff file, a model (.obj, .stl, .ply), a .draft that aset bake made (which is drawn with --approx all\n"
+    "--approx-depth 0 --cells plane), or - for NFF on standard input. Without -o the picture is drawn\n"
     "and thrown away. A model, which has none, gets a view that shows all of it, two lights, a ground and a background.\n"
     "\n"
     "  -o, --output FILE       .png or .ppm; - for PNG on standard output\n"
@@ -272,6 +273,19 @@ static bool check_request(const request *r) {
     return true;
 }
 
+/* A baked draft has nothing exact to draw but what it keeps, so every ray is approximate. */
+static bool set_baked(request *r) {
+    settings *s = &r->settings;
+    if ((r->has_approx && s->approx_kinds != ASET_ALL_KINDS) || (r->has_approx_depth && s->approx_depth != 0)) {
+        tool_error(NULL, 0, "--approx: %s is a draft, expected --approx all --approx-depth 0, or neither", r->scene);
+        return false;
+    }
+    s->approx_kinds = ASET_ALL_KINDS;
+    s->approx_depth = 0;
+    s->cells = s->cells == CELLS_FLAT ? CELLS_PLANE : s->cells;
+    return true;
+}
+
 static bool parse_request(request *r, int argc, char **argv) {
     int option;
     memset(r, 0, sizeof *r);
@@ -292,7 +306,7 @@ static bool parse_request(request *r, int argc, char **argv) {
     if (r->is_aset && !r->has_approx) {
         r->settings.approx_kinds = ASET_ALL_KINDS;
     }
-    return check_request(r);
+    return (!tool_has_extension(r->scene, ".draft") || set_baked(r)) && check_request(r);
 }
 
 /* What the threads share; the lock guards next, written and failed. */
