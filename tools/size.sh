@@ -12,6 +12,23 @@ cat > "$dir/user.c" <<'END'
 #include <string.h>
 static volatile float x = 2;
 int main(void) { char a[64]; memset(a, (int)sqrtf(x), sizeof a); memcpy(a, a + 32, 16); return a[(int)x]; }
+#elif defined DRAFT
+#include <aset/aset.h>
+static ASET_ARENA_BLOCK(block, 4096);
+static unsigned char row[64 * 3];
+extern const uint32_t words[];
+const uint32_t words[40] = {1};
+int main(void) {
+    aset_arena arena;
+    aset_draft draft;
+    aset_scratch scratch;
+    aset_tracer tracer = {.draft = &draft, .scene = &draft.stage, .approx_kinds = ASET_ALL_KINDS, .depth = 1};
+    aset_picture picture = {.width = 64, .height = 64, .pixels = row};
+    aset_arena_init(&arena, block, sizeof block);
+    aset_draft_open(&draft, words, 40, &arena, 0);
+    aset_scratch_init(&scratch, 1, &arena);
+    return aset_render_rows(&tracer, &draft.stage.view, &picture, 0, 64, &scratch, 0);
+}
 #else
 #include <aset/aset.h>
 static ASET_ARENA_BLOCK(block, 65536);
@@ -74,4 +91,6 @@ measure "without cones" mset -DASET_WITH_CONES=0
     measure "the same, exact only" mset $no_kinds -DASET_WITH_SPHERES=0 $no_effects $exact
     measure "spheres only, exact only, no reflection or refraction" mset $no_kinds -DASET_WITH_POLYGONS=0 $no_effects $exact
     measure "the same" brute $no_kinds -DASET_WITH_POLYGONS=0 $no_effects $exact
+    measure "a draft opened and drawn, all kinds of kept objects" - -DDRAFT
+    measure "the same, kept polygons only, no reflection or refraction" - -DDRAFT $no_kinds -DASET_WITH_SPHERES=0 $no_effects
 }

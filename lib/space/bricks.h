@@ -10,7 +10,7 @@
 #include "space/walk.h"
 
 /* Part of the walk's loop, wherever it is called: else its numbers would not stay in registers. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(__OPTIMIZE_SIZE__)
 #define FUSED static inline __attribute__((always_inline))
 #else
 #define FUSED static inline

@@ -66,13 +66,15 @@ static void grid_go(const aset_space *space, const probe *ray, walk_request *wal
     const aset_cells *cells = &space->cells;
     const aset_slices *slices = &space->slices;
     voxel_box whole = slices_whole(slices);
-    const uint32_t faces[3] = {0, 0, 0};
     brick_walk bricks;
     dda way;
+#if ASET_WITH_APPROXIMATION
     if (!walk->wants_references) {
+        const uint32_t faces[3] = {0, 0, 0};
         bricks_go(space, ray, walk, faces, 1, true);
         return;
     }
+#endif
     if (cells->n_cells == 0 || (!dda_inside(&way, slices, ray) && !dda_enter(&way, slices, ray, &whole)) ||
         way.t > walk->limit) {
         return;

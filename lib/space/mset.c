@@ -16,4 +16,6 @@ static void mset_build(aset_space *space, const aset_space_size *size, aset_aren
     sides_build(space, size, arena);
 }
 
-const aset_method aset_mset = {"mset", false, mset_measure, mset_build, sides_go, sides_each};
+SIDES_GO(mset_go, true)
+
+const aset_method aset_mset = {"mset", false, mset_measure, mset_build, mset_go, sides_each};

@@ -151,4 +151,6 @@ static void set_build(aset_space *space, const aset_space_size *size, aset_arena
     sides_build(space, size, arena);
 }
 
-const aset_method aset_set = {"set", false, set_measure, set_build, sides_go, sides_each};
+SIDES_GO(set_go, false)
+
+const aset_method aset_set = {"set", false, set_measure, set_build, set_go, sides_each};

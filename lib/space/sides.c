@@ -218,17 +218,8 @@ static aset_real visit_side(const aset_space *space, walk_request *walk, const d
     return visit_cell(space, walk, &cell, references_begin(&space->references, rank, marks, place), way->t > 0 ? 0 : held);
 }
 
-/* The approximate walk (bricks.h), once for MSET and once for SET: a choice at every crossing would cost a tenth of it. */
-static void sides_first(const aset_space *space, const probe *ray, walk_request *walk, const uint32_t faces[3]) {
-    bricks_go(space, ray, walk, faces, FACES, true);
-}
-
-static void sides_first_in_table(const aset_space *space, const probe *ray, walk_request *walk, const uint32_t faces[3]) {
-    bricks_go(space, ray, walk, faces, FACES, false);
-}
-
 /*
- * The walk. It goes from brick to brick of 4 x 4 x 4 voxels. A brick without a mark on the three faces that this ray can
+ * The exact walk. It goes from brick to brick of 4 x 4 x 4 voxels. A brick without a mark on the three faces that this ray can
  * enter by costs one crossing and one look at the map; only in the others are voxels stepped through, each with one crossing
  * and the test of one bit of the marks at hand. Both levels cross slices in the same order, so this is the plain walk voxel
  * by voxel, with the empty part left out (tests/test_space.c walks the plain way beside it).
@@ -241,14 +232,6 @@ void sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
     uint32_t held = 0;
     brick_walk bricks;
     dda way;
-    if (!walk->wants_references) {
-        if (slices->planes[0] == NULL) {
-            sides_first(space, ray, walk, faces);
-        } else {
-            sides_first_in_table(space, ray, walk, faces);
-        }
-        return;
-    }
     if (cells->n_cells == 0 || !sides_begin(space, ray, walk, &way, &held) || way.t > walk->limit) {
         return;
     }
