@@ -8,8 +8,9 @@
  * not. What is smaller than a column is met in proportion to its area, which is also what it covers in a picture. Spheres
  * and cones come as polygons of about a column.
  *
- * Memory: bins for the layers of blocks between floor and ceiling only. When they are full, the ceiling comes down and the bins
- * above it are thrown away; what was below has missed nothing, so the pass goes on, and the next one begins at the ceiling.
+ * Memory: bins for the blocks between floor and ceiling only, in the order in which they lie in the map. When the bins are full, the
+ * ceiling comes down and those above it are thrown away; what was below has missed nothing, so the pass goes on, and the next
+ * one begins at the ceiling.
  */
 #include "approx/baker.h"
 
@@ -29,7 +30,6 @@
 /* What the library takes as coordinates at all; anything else goes the way that refuses it. */
 #define COORDINATE_MAX R(1e15)
 #define TEXTURES_MAX 2048u
-#define LAYERS_MAX ((ASET_BAKE_DIVISIONS_MAX + 3) / 4)
 
 static uint32_t n_all_blocks(const aset_baker *b) {
     return b->blocks[0] * b->blocks[1] * b->blocks[2];
@@ -42,9 +42,14 @@ static void clear_bins(aset_baker *b) {
     b->n_bins = 0;
 }
 
-/* Which layer of blocks a key's voxel is in. */
-static uint32_t layer_of(const aset_baker *b, uint32_t key) {
-    return key / 6 / (b->n[0] * b->n[1]) / 4;
+static inline uint32_t block_at(const aset_baker *b, uint32_t x, uint32_t y, uint32_t z) {
+    return ((z / 4) * b->blocks[1] + y / 4) * b->blocks[0] + x / 4;
+}
+
+/* The block that a key's voxel is in. */
+static uint32_t block_of(const aset_baker *b, uint32_t key) {
+    uint32_t voxel = key / 6;
+    return block_at(b, voxel % b->n[0], voxel / b->n[0] % b->n[1], voxel / b->n[0] / b->n[1]);
 }
 
 /* Puts a bin where its key's search finds it: at or before its place, all before which is in order. */
@@ -68,34 +73,43 @@ static void settle_bins(aset_baker *b, uint32_t start) {
     }
 }
 
-/* Lowers the ceiling until half of the bins are free. False: one layer alone is too much. */
-static bool lower_ceiling(aset_baker *b) {
-    uint32_t in_layer[LAYERS_MAX] = {0};
-    uint32_t ceiling = b->floor_layer + 1, kept, empty = 0;
+/* Bins of blocks below a ceiling; *empty: a slot that holds none. */
+static uint32_t count_below(const aset_baker *b, uint32_t ceiling, uint32_t *empty) {
+    uint32_t n = 0;
     for (uint32_t i = 0; i < b->capacity; i++) {
-        if (b->keys[i] != BIN_EMPTY) {
-            in_layer[layer_of(b, b->keys[i])]++;
+        if (b->keys[i] == BIN_EMPTY) {
+            *empty = i;
         } else {
-            empty = i; /* there is one: an eighth is */
+            n += block_of(b, b->keys[i]) < ceiling;
         }
     }
-    kept = in_layer[b->floor_layer];
-    while (ceiling < b->ceiling_layer && kept + in_layer[ceiling] <= b->capacity / 2) {
-        kept += in_layer[ceiling++];
+    return n;
+}
+
+/* Lowers the ceiling until half of the bins are free, by halving what is in question. False: one block alone is too much. */
+static bool lower_ceiling(aset_baker *b) {
+    uint32_t low = b->floor_block + 1, high = b->ceiling_block, empty = 0, kept;
+    while (low < high) { /* the highest ceiling that leaves half of them free, or low */
+        uint32_t middle = low + (high - low + 1) / 2;
+        if (count_below(b, middle, &empty) <= b->capacity / 2) {
+            low = middle;
+        } else {
+            high = middle - 1;
+        }
     }
-    if (ceiling == b->ceiling_layer || kept + 1 >= b->capacity - b->capacity / 8) {
+    kept = count_below(b, low, &empty);
+    if (low == b->ceiling_block || kept + 1 >= b->capacity - b->capacity / 8) {
         return false;
     }
-    b->ceiling_layer = ceiling;
+    b->ceiling_block = low;
     for (uint32_t i = 0; i < b->capacity; i++) {
-        if (b->keys[i] != BIN_EMPTY && layer_of(b, b->keys[i]) >= ceiling) {
+        if (b->keys[i] != BIN_EMPTY && block_of(b, b->keys[i]) >= low) {
             b->keys[i] = BIN_EMPTY;
         }
     }
     settle_bins(b, empty);
     b->n_bins = kept;
-    uint32_t below = ceiling * b->blocks[0] * b->blocks[1];
-    memset(b->marks + below, 0, (n_all_blocks(b) - below) * sizeof *b->marks);
+    memset(b->marks + low, 0, (n_all_blocks(b) - low) * sizeof *b->marks);
     return true;
 }
 
@@ -110,7 +124,7 @@ static bin *find_bin(aset_baker *b, uint32_t key) {
             b->failure = ASET_ERR_NOMEM;
             return NULL;
         }
-        if (layer_of(b, key) >= b->ceiling_layer) {
+        if (block_of(b, key) >= b->ceiling_block) {
             return NULL;
         }
         slot = baker_slot(b, key);
@@ -120,8 +134,7 @@ static bin *find_bin(aset_baker *b, uint32_t key) {
     b->keys[slot] = key;
     b->n_bins++;
     uint32_t voxel = key / 6, x = voxel % b->n[0], y = voxel / b->n[0] % b->n[1], z = voxel / b->n[0] / b->n[1];
-    b->marks[((size_t)(z / 4) * b->blocks[1] + y / 4) * b->blocks[0] + x / 4] |=
-        UINT64_C(1) << (x % 4 + 4 * (y % 4) + 16 * (z % 4));
+    b->marks[block_at(b, x, y, z)] |= UINT64_C(1) << (x % 4 + 4 * (y % 4) + 16 * (z % 4));
     return it;
 }
 
@@ -149,17 +162,16 @@ static void add_sample(aset_baker *b, sheet *s, int32_t i, int32_t j) {
     at[s->u] = (uint32_t)i / 4;
     at[s->v] = (uint32_t)j / 4;
     at[s->a] = k < b->n[s->a] ? k : b->n[s->a] - 1;
-    if (at[2] / 4 < b->floor_layer || at[2] / 4 >= b->ceiling_layer) {
-        return;
-    }
     uint32_t key = ((at[2] * b->n[1] + at[1]) * b->n[0] + at[0]) * 6 + s->key_side;
-    if (key != s->last_key || s->last == NULL || s->last_ceiling != b->ceiling_layer) { /* bins move with the ceiling */
-        s->last = find_bin(b, key);
+    if (key != s->last_key || s->last_ceiling != b->ceiling_block) { /* bins move with the ceiling */
+        uint32_t block = block_at(b, at[0], at[1], at[2]);
+        bool is_ours = block >= b->floor_block && block < b->ceiling_block;
+        s->last = is_ours ? find_bin(b, key) : NULL;
         s->last_key = key;
-        s->last_ceiling = b->ceiling_layer;
-        if (s->last == NULL) {
-            return;
-        }
+        s->last_ceiling = b->ceiling_block;
+    }
+    if (s->last == NULL) {
+        return;
     }
     bin *it = s->last;
     if (it->n == SAMPLES_MAX) {
@@ -817,7 +829,7 @@ static bool start_pass(aset_baker *b) {
     size_t left = (size_t)((unsigned char *)(b->raw - b->n_raw) - b->after);
     size_t capacity = left / BYTES_PER_BIN(b);
     b->capacity = capacity < UINT32_MAX / 2 ? (uint32_t)capacity : UINT32_MAX / 2;
-    b->ceiling_layer = b->blocks[2];
+    b->ceiling_block = n_all_blocks(b);
     if (b->capacity <= BINS_MIN) {
         return false;
     }
@@ -838,9 +850,9 @@ static aset_status give_up(aset_baker *b, size_t need) {
     return ASET_ERR_NOMEM;
 }
 
-/* Memory for one layer of blocks in which every side is marked: more than any model needs. */
+/* Memory for one block in which every side is marked. */
 static size_t need_at_most(const aset_baker *b) {
-    size_t sides = (size_t)b->blocks[0] * b->blocks[1] * 64 * 6;
+    size_t sides = 64 * 6;
     return fixed_bytes(b) + (sides + sides / 4 + 2 * BINS_MIN) * BYTES_PER_BIN(b) +
            (size_t)b->n_counted * sizeof *b->raw;
 }
@@ -870,7 +882,7 @@ static aset_status start_baking(aset_baker *b, size_t wanted, uint32_t longest_m
     b->n_raw = 0;
     b->n_counted = 0;
     b->n_textures = 0;
-    b->floor_layer = 0;
+    b->floor_block = 0;
     b->counting = false;
     b->failure = ASET_OK;
     b->report.voxels = b->report.merged = 0;
@@ -900,7 +912,7 @@ static aset_status bake_again(aset_baker *b, size_t need) {
     size_t room = room_for_region(b);
     b->stage_sink = aset_counter_sink(&b->counter);
     if (had < room) {
-        return start_baking(b, had <= room / 2 ? 2 * had : room, longest);
+        return start_baking(b, had / 4 * 5 < room ? had / 4 * 5 : room, longest);
     }
     if (is_auto && longest > AUTO_LONGEST_MIN) {
         return start_baking(b, 0, longest * 3 / 4 > AUTO_LONGEST_MIN ? longest * 3 / 4 : AUTO_LONGEST_MIN);
@@ -954,9 +966,9 @@ static aset_status end_baking(aset_baker *b) {
         return b->failure;
     }
     baker_harvest(b);
-    b->floor_layer = b->ceiling_layer;
+    b->floor_block = b->ceiling_block;
     b->stage_sink = aset_counter_sink(&b->counter); /* the stage has its entities: further ones go nowhere */
-    if (b->floor_layer == b->blocks[2]) {
+    if (b->floor_block == n_all_blocks(b)) {
         size_t work = baker_words_bound(b, b->n_counted), bins = need_at_most(b);
         if (b->counting) {
             return bake_again(b, work > bins ? work : bins);

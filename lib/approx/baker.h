@@ -8,7 +8,7 @@
  * points and crossings hold the polygon in hand. marks: 64 bits for each block of voxels, empty blocks too. A bin gathers what
  * faces one side of one voxel, in whole numbers only, so that the order of objects cannot matter; bins are found by hashing their keys,
  * voxel * 6 + side, which stand apart from them as a search looks at many. When
- * a pass has ended, the bins of its layers of blocks become raw facets, in the order of voxels and sides.
+ * a pass has ended, the bins of its blocks become raw facets, in the order of voxels and sides.
  */
 #ifndef ASET_APPROX_BAKER_H
 #define ASET_APPROX_BAKER_H
@@ -56,7 +56,7 @@ static inline uint32_t baker_slot(const aset_baker *baker, uint32_t key) {
     return slot;
 }
 
-/* The bins of the layers of blocks baked in this pass become raw facets, or are only counted if baker->counting. */
+/* The bins of the blocks baked in this pass become raw facets, or are only counted if baker->counting. */
 void baker_harvest(aset_baker *baker);
 
 /* Makes the words at the region's start from all raw facets. ASET_ERR_NOMEM: the region has no room for both. */

@@ -101,7 +101,7 @@ void baker_harvest(aset_baker *b) {
         b->textures[0] = texture_average(&sum);
         b->n_textures = 1;
     }
-    for (uint32_t block = b->floor_layer * in_layer; block < b->ceiling_layer * in_layer; block++) {
+    for (uint32_t block = b->floor_block; block < b->ceiling_block; block++) {
         uint32_t x = block % b->blocks[0] * 4, y = block / b->blocks[0] % b->blocks[1] * 4, z = block / in_layer * 4;
         for (uint64_t left = b->marks[block]; left != 0; left &= left - 1) {
             uint32_t bit = bits_lowest(left);
