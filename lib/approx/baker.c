@@ -73,32 +73,44 @@ static void settle_bins(aset_baker *b, uint32_t start) {
     }
 }
 
-/* Bins of blocks below a ceiling; *empty: a slot that holds none. */
-static uint32_t count_below(const aset_baker *b, uint32_t ceiling, uint32_t *empty) {
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < b->capacity; i++) {
-        if (b->keys[i] == BIN_EMPTY) {
-            *empty = i;
-        } else {
-            n += block_of(b, b->keys[i]) < ceiling;
+/* Parts in which blocks are counted to find a ceiling. */
+#define PARTS 256u
+
+/*
+ * The highest ceiling below which no more than half of the bins are, and these: found by counting the bins in equal parts of the
+ * blocks in question, then in parts of the part where half is passed. One block at least. *empty: a slot that holds no bin.
+ */
+static uint32_t find_ceiling(const aset_baker *b, uint32_t *kept, uint32_t *empty) {
+    uint32_t low = b->floor_block, high = b->ceiling_block, below = 0; /* bins below low */
+    for (;;) {
+        uint32_t in_part[PARTS] = {0}, size = (high - low + PARTS - 1) / PARTS, part = 0;
+        for (uint32_t i = 0; i < b->capacity; i++) {
+            if (b->keys[i] == BIN_EMPTY) {
+                *empty = i;
+                continue;
+            }
+            uint32_t block = block_of(b, b->keys[i]);
+            if (block >= low && block < high) {
+                in_part[(block - low) / size]++;
+            }
         }
+        while (low + size <= high && below + in_part[part] <= b->capacity / 2) {
+            below += in_part[part++];
+            low += size;
+        }
+        if (size == 1) {
+            bool is_first = low == b->floor_block; /* one block is more than half: it alone, then */
+            *kept = below + (is_first ? in_part[part] : 0);
+            return low + is_first;
+        }
+        high = low + size < high ? low + size : high;
     }
-    return n;
 }
 
-/* Lowers the ceiling until half of the bins are free, by halving what is in question. False: one block alone is too much. */
+/* Lowers the ceiling until half of the bins are free. False: one block alone is too much. */
 static bool lower_ceiling(aset_baker *b) {
-    uint32_t low = b->floor_block + 1, high = b->ceiling_block, empty = 0, kept;
-    while (low < high) { /* the highest ceiling that leaves half of them free, or low */
-        uint32_t middle = low + (high - low + 1) / 2;
-        if (count_below(b, middle, &empty) <= b->capacity / 2) {
-            low = middle;
-        } else {
-            high = middle - 1;
-        }
-    }
-    kept = count_below(b, low, &empty);
-    if (low == b->ceiling_block || kept + 1 >= b->capacity - b->capacity / 8) {
+    uint32_t empty = 0, kept = 0, low = find_ceiling(b, &kept, &empty);
+    if (low >= b->ceiling_block || kept + 1 >= b->capacity - b->capacity / 8) {
         return false;
     }
     b->ceiling_block = low;
@@ -309,7 +321,7 @@ static void sample_sheet(aset_baker *b, const aset_real *points, uint32_t n, ase
             fill_row(b, &s, points, n, row, crossings);
         }
     }
-    b->report.unseen -= s.seen;
+    b->report.unseen -= s.seen && b->floor_block == 0;
 }
 
 /*
@@ -329,7 +341,14 @@ static inline void sample_polygon(aset_baker *b, const aset_real *points, uint32
         to[a] = first_column(high, b->n[a]);
         without += from[a] == to[a];
     }
-    b->report.unseen++; /* until it is seen */
+    if (b->floor_block > 0) { /* a further pass: the first has counted those that are unseen */
+        uint32_t in_layer = b->blocks[0] * b->blocks[1];
+        uint32_t low = (uint32_t)(from[2] > 0 ? from[2] - 1 : 0) / 16, high = (uint32_t)to[2] / 16;
+        if ((high + 1) * in_layer <= b->floor_block || low * in_layer >= b->ceiling_block) {
+            return;
+        }
+    }
+    b->report.unseen += b->floor_block == 0; /* until it is seen */
     if (without < 2) {
         sample_sheet(b, points, n, crossings, from, to);
     }
@@ -837,7 +856,9 @@ static bool start_pass(aset_baker *b) {
     b->keys = (uint32_t *)(void *)b->after;
     b->bins = b->after + ASET_ROUND(b->capacity * sizeof *b->keys);
     clear_bins(b);
-    b->report.unseen = 0;
+    if (b->floor_block == 0) {
+        b->report.unseen = 0;
+    }
     return true;
 }
 
