@@ -972,8 +972,9 @@ trade_columns='BEGIN { FS = "," } NR == 1 { for (i = 1; i <= NF; i++) c[$i] = i;
 
 trade_table() {
     works trade "$scenes/balls.nff" tetra:2 -o t -m mset,octree,brute --grids 4,auto --octree-depths 2 -s 24x24,16x20 --rounds 2
-    # mset twice, octree, brute; exact, and four approximations with and without curtailment; two sizes; two scenes
-    [ "$(wc -l <t/trade.csv)" -eq $((1 + 4 * 9 * 2 * 2)) ] || fail "$(wc -l <t/trade.csv) lines"
+    # mset twice, octree, brute; exact, and four approximations with and without curtailment; two drafts of mset; two sizes;
+    # two scenes
+    [ "$(wc -l <t/trade.csv)" -eq $((1 + (4 * 9 + 2 * 2) * 2 * 2)) ] || fail "$(wc -l <t/trade.csv) lines"
     for column in scene method grid octree_depth approx level cells curtail size build_s render_s rays tests cells_visited \
         peak_bytes psnr rmse ssim max_difference differing best; do
         head -n 1 t/trade.csv | tr ',' '\n' | grep -qx $column || fail "no column $column: $(head -n 1 t/trade.csv)"
@@ -1009,27 +1010,54 @@ trade_best_marks() {
 
 # The figures are those of render and compare, and peak_bytes is enough for render.
 trade_says_what_render_says() {
+    works trade "$scenes/balls.nff" -o t -m mset,grid,arts --grids 6,20 --octree-depths 3 --cells flat,normal,plane -s 24x24 \
+        --rounds 1
+    trade_says_the_same "$scenes/balls.nff" 24x24
+    # flat: four of each space; drafts: two kinds, of mset all rays and shadows, of grid shadows
+    [ "$(wc -l <rows)" -eq $((5 * 4 + 2 * (2 * 2 + 2))) ] || fail "$(wc -l <rows) rows"
+}
+
+# $1: the scene of t/trade.csv; $2: its size.
+trade_says_the_same() {
     local words
-    works trade "$scenes/balls.nff" -o t -m mset,grid,arts --grids 6 --octree-depths 3 -s 24x24 --rounds 1
-    works render "$scenes/balls.nff" -s 24x24 -o exact.png
-    awk "$trade_columns"' $c["level"] != "" && $c["curtail"] == 0.5 {
+    works render "$1" -s "$2" -o exact.png
+    awk "$trade_columns"' $c["cells"] != "" && $c["size"] == "'"$2"'" && ($c["curtail"] == 0.5 || $c["cells"] != "flat") {
         print $c["method"], $c["grid"] == "" ? "--octree-depth=" $c["octree_depth"] : "--grid=" $c["grid"], $c["approx"],
-            $c["level"], $c["peak_bytes"], $c["tests"], $c["cells_visited"], $c["psnr"] }' t/trade.csv >rows
-    [ "$(wc -l <rows)" -eq 12 ] || fail "$(wc -l <rows) rows"
-    while read -r method divisions approx level bytes tests cells db; do
-        words="-m $method $divisions --approx $approx --approx-depth $level --memory $bytes"
+            $c["level"], $c["cells"], $c["peak_bytes"], $c["tests"], $c["cells_visited"], $c["psnr"] }' t/trade.csv >rows
+    while read -r method divisions approx level kind bytes tests cells db; do
+        words="-m $method $divisions --approx $approx --approx-depth $level --cells $kind --memory $bytes"
         # shellcheck disable=SC2086
-        works render "$scenes/balls.nff" $words -s 24x24 -o a.png --stats a.json
+        works render "$1" $words -s "$2" -o a.png --stats a.json
         [ "$(json a.json work tests) $(json a.json work cells_visited)" = "$tests $cells" ] || fail "$words: other counts"
         [ "$(psnr exact.png a.png)" = "$db" ] || fail "$words: psnr $(psnr exact.png a.png), the table says $db"
     done <rows
 }
 
+# A model's view depends on the picture's shape, and its materials come from another file.
+trade_of_a_model() {
+    {
+        echo "mtllib model.mtl"
+        printf 'v %s\n' "0 0 0" "2 0 0" "1 2 0" "1 1 1.5"
+        printf 'usemtl red\nf 1 3 2\nf 1 2 4\nusemtl blue\nf 2 3 4\nf 3 1 4\n'
+    } >model.obj
+    printf 'newmtl red\nKd 0.8 0.1 0.1\nnewmtl blue\nKd 0.1 0.1 0.9\n' >model.mtl
+    works trade model.obj -o t -m mset --grids 8 -s 30x20,20x30 --rounds 1
+    [ "$(wc -l <t/trade.csv)" -eq 23 ] || fail "$(wc -l <t/trade.csv) lines"
+    trade_says_the_same model.obj 30x20
+    trade_says_the_same model.obj 20x30
+}
+
 trade_resumes() {
-    local sweep="trade $scenes/balls.nff -o t -m mset --grids 8 -s 40x40 --rounds 99"
+    local tries sweep="trade $scenes/balls.nff -o t -m mset --grids 8 -s 40x40 --rounds 99"
     # shellcheck disable=SC2086
     "$aset" $sweep >/dev/null 2>&1 &
-    until [ -e t/trade.csv.partial ] && [ "$(wc -l <t/trade.csv.partial)" -gt 5 ]; do sleep 0.01; done
+    # a tool that never begins is not waited for: 2000 times 0.01 s at least
+    for ((tries = 0; tries < 2000; tries++)); do
+        [ -e t/trade.csv.partial ] && [ "$(wc -l <t/trade.csv.partial)" -gt 5 ] && break
+        kill -0 $! 2>/dev/null || fail "the sweep ended before it was interrupted"
+        sleep 0.01
+    done
+    [ $tries -lt 2000 ] || { kill -KILL $!; fail "the sweep does not begin"; }
     kill -KILL $! && wait $! 2>/dev/null
     [ ! -e t/trade.csv ] || fail "the table is there before its time"
     # a time that no measurement gives, and a line that was cut off
@@ -1042,7 +1070,7 @@ trade_resumes() {
     same p t/trade.csv.partial "a refused file was changed"
     # shellcheck disable=SC2086
     works $sweep
-    [ "$(wc -l <t/trade.csv)" -eq 10 ] || fail "$(wc -l <t/trade.csv) lines"
+    [ "$(wc -l <t/trade.csv)" -eq 12 ] || fail "$(wc -l <t/trade.csv) lines"
     [ "$(grep -c ',777\.000000,' t/trade.csv)" -eq 1 ] || fail "what was measured before is not in the table"
     [ ! -e t/trade.csv.partial ] || fail "the partial file is still there"
 }
@@ -1051,7 +1079,7 @@ trade_resumes() {
 trade_page() {
     works trade "$scenes/balls.nff" -o t --quick -s 24x24
     grep -q '</html>' t/trade.html || fail "the page does not end"
-    [ "$(grep -o 'src="data:image/png;base64,iVBORw0KGgo' t/trade.html | wc -l)" -eq 5 ] || fail "not five pictures within"
+    [ "$(grep -o 'src="data:image/png;base64,iVBORw0KGgo' t/trade.html | wc -l)" -eq 7 ] || fail "not seven pictures within"
     ! grep -oE '(src|href)="[^d#][^"]*"|<script|@import|url\([^#]' t/trade.html || fail "it refers to something outside"
     [ "$(grep -c '<tr class="best"><td>best' t/trade.html)" -eq "$(awk -F, '$NF == 1' t/trade.csv | wc -l)" ] || fail "other marks"
     if command -v gnuplot >/dev/null; then
@@ -1070,6 +1098,9 @@ trade_refuses() {
     wrong_words trade balls --grids 8,,9
     wrong_words trade balls --methods mset,other
     wrong_words trade balls --rounds 0
+    wrong_words trade balls --cells flat,round
+    wrong_words trade balls --methods octree --cells plane
+    wrong_words trade balls --grids 16,513
     tool trade nosuch
     refused 1 "aset: nosuch: "
     tool trade balls:0
@@ -1100,7 +1131,7 @@ scene_text_is_read_freely budget_exact budget_approximate budget_of_two_threads 
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
 scene_into_render compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
 full_disk file_size_limit closed_pipe outputs_that_cannot_be old_output interrupted progress_bar
-trade_table trade_best_marks trade_says_what_render_says trade_resumes trade_page trade_refuses
+trade_table trade_best_marks trade_says_what_render_says trade_of_a_model trade_resumes trade_page trade_refuses
 "
 for name in $cases; do
     case $name in

@@ -17,12 +17,14 @@
 
 static const char help[] =
     "aset trade SCENE... [-o DIRECTORY]: draws each scene by many settings; tells what each costs and how far off it is.\n"
-    "SCENE is an .nff file, or the name of a procedural scene (aset scene --help), such as snow or gears:2 for size 2.\n"
+    "SCENE is an .nff, .obj, .stl or .ply file, or the name of a procedural scene (aset scene --help), such as snow or\n"
+    "gears:2 for size 2.\n"
     "\n"
     "  -o, --output DIR         where the results go; made if missing; default trade\n"
     "  -m, --methods LIST       of mset,set,grid,octree,arts,excell,brute, or all; default all but brute\n"
     "      --grids LIST         divisions of mset, set, grid: N, NXxNYxNZ or auto; default 16,32,64\n"
     "      --octree-depths LIST halvings in octree, arts, excell; default 4,6\n"
+    "      --cells LIST         what cells remember: flat (average textures), normal, plane (drafts); default flat,plane\n"
     "  -s, --sizes LIST         pictures, each WxH; default 256x256\n"
     "      --rounds N           measurements of each setting; default 3\n"
     "      --quick              mset,grid, 16,32, 128x128 and one round, but for what other options say\n"
@@ -30,16 +32,19 @@ static const char help[] =
     "  -h, --help               this text\n"
     "\n"
     "Each space is drawn exactly, and approximately with all rays from depth 1, all from 0, shadow rays from 0 and eye\n"
-    "rays from 0, each with trapped rays curtailed at 0.5 of a voxel's diagonal and not at all. One thread; an arena of\n"
-    "exactly the bytes needed; every round measures all settings once.\n"
+    "rays from 0, each with trapped rays curtailed at 0.5 of a voxel's diagonal and not at all. mset and grid are drawn as\n"
+    "drafts too, with all rays from 0 and shadow rays from 0; nothing is curtailed then. With all rays from 0 a draft of\n"
+    "either is the same and needs neither scene nor space: it is drawn once, as mset. One thread; an arena of exactly the\n"
+    "bytes needed; every round measures all settings once.\n"
     "\n"
     "DIR/trade.csv has a row for each setting; a field that does not apply is empty. build_s and render_s are medians over\n"
-    "the rounds, with the smallest and the largest; time is build_s + render_s as a multiple of the fastest exact mset's "
-    "on\n"
-    "the same scene and size (without one: of the fastest exact setting's). peak_bytes is the arena with which render can\n"
-    "draw it, not one byte more. psnr, rmse, ssim, max_difference and differing compare with the exact picture of the same\n"
-    "size, as aset compare does. best is 1 where no other row of that scene and size beats the setting: is as good in\n"
-    "build_s + render_s, in peak_bytes and in rmse, and better in at least one; else 0.\n"
+    "the rounds, with the smallest and the largest; no reading of the scene is in them. time is build_s + render_s as a\n"
+    "multiple of the fastest exact mset's on the same scene and size (without one: of the fastest exact setting's).\n"
+    "peak_bytes is the arena with which render draws it so, not one byte more; a draft has what its baker takes if free "
+    "to,\n"
+    "and can do with less in more passes over the scene. psnr, rmse, ssim, max_difference and differing compare with the\n"
+    "exact picture of the same size, as aset compare does. best is 1 where no other row of that scene and size beats the\n"
+    "setting: is as good in build_s + render_s, in peak_bytes and in rmse, and better in at least one; else 0.\n"
     "DIR/trade.html shows it all, with plots if gnuplot is there.\n"
     "\n"
     "An interrupted sweep leaves DIR/trade.csv.partial; the same words again go on from there.\n";
@@ -57,6 +62,14 @@ static bool parse_methods(trade_words *w, const char *text) {
     words[n] = (tool_word){"all", all};
     words[n + 1] = (tool_word){NULL, 0};
     return tool_parse_words("--methods", text, words, &w->methods);
+}
+
+static bool parse_cells(trade_words *w, const char *text) {
+    tool_word words[TRADE_CELLS + 1] = {{NULL, 0}};
+    for (unsigned i = 0; i < TRADE_CELLS; i++) {
+        words[i] = (tool_word){trade_cells[i], 1u << i};
+    }
+    return tool_parse_words("--cells", text, words, &w->cells);
 }
 
 static bool parse_grid(trade_words *w, const char *text) {
@@ -109,7 +122,7 @@ static bool parse_list(trade_words *w, const char *option, const char *text,
     return done;
 }
 
-enum { OPTION_GRIDS = 256, OPTION_DEPTHS, OPTION_ROUNDS, OPTION_QUICK };
+enum { OPTION_GRIDS = 256, OPTION_DEPTHS, OPTION_CELLS, OPTION_ROUNDS, OPTION_QUICK };
 
 static bool parse_option(trade_words *w, int option) {
     switch (option) {
@@ -118,6 +131,7 @@ static bool parse_option(trade_words *w, int option) {
     case OPTION_GRIDS: w->n_grids = 0; return parse_list(w, "--grids", optarg, parse_grid);
     case OPTION_DEPTHS: w->n_depths = 0; return parse_list(w, "--octree-depths", optarg, parse_depth);
     case 's': w->n_sizes = 0; return parse_list(w, "--sizes", optarg, parse_size);
+    case OPTION_CELLS: return parse_cells(w, optarg);
     case OPTION_ROUNDS: return tool_parse_count("--rounds", optarg, 1, ROUNDS_MAX, &w->rounds);
     case OPTION_QUICK: w->quick = true; return true;
     case 'q': w->quiet = true; return true;
@@ -126,12 +140,35 @@ static bool parse_option(trade_words *w, int option) {
     }
 }
 
+/* Only mset and grid have drafts, whose divisions have a limit of their own. */
+static bool check_drafts(const trade_words *w) {
+    unsigned drafted = 0;
+    for (unsigned m = 0; tool_methods[m] != NULL; m++) {
+        drafted |= tool_methods[m] == &aset_mset || tool_methods[m] == &aset_grid ? w->methods & 1u << m : 0;
+    }
+    if (drafted == 0 && (w->cells >> CELLS_FLAT & 1) == 0) {
+        tool_error(NULL, 0, "--cells: only mset and grid have drafts, expected one of them in --methods, or flat cells");
+        return false;
+    }
+    for (uint32_t i = 0; drafted != 0 && w->cells != 1u << CELLS_FLAT && i < w->n_grids; i++) {
+        for (int a = 0; a < 3; a++) {
+            if (w->grids[i][a] > ASET_BAKE_DIVISIONS_MAX) {
+                tool_error(NULL, 0, "--grids: %" PRIu32 " are too many for a draft, expected at most %u, or --cells flat",
+                           w->grids[i][a], ASET_BAKE_DIVISIONS_MAX);
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 static bool parse_words(trade_words *w, int argc, char **argv) {
     static const struct option longs[] = {
         {"output", required_argument, NULL, 'o'},
         {"methods", required_argument, NULL, 'm'},
         {"grids", required_argument, NULL, OPTION_GRIDS},
         {"octree-depths", required_argument, NULL, OPTION_DEPTHS},
+        {"cells", required_argument, NULL, OPTION_CELLS},
         {"sizes", required_argument, NULL, 's'},
         {"rounds", required_argument, NULL, OPTION_ROUNDS},
         {"quick", no_argument, NULL, OPTION_QUICK},
@@ -164,9 +201,10 @@ static bool parse_words(trade_words *w, int argc, char **argv) {
     w->directory = w->directory != NULL ? w->directory : "trade";
     w->rounds = w->rounds > 0 ? w->rounds : w->quick ? 1 : 3;
     return (w->methods > 0 || parse_methods(w, w->quick ? "mset,grid" : "mset,set,grid,octree,arts,excell")) &&
+           (w->cells > 0 || parse_cells(w, "flat,plane")) &&
            (w->n_grids > 0 || parse_list(w, "--grids", w->quick ? "16,32" : "16,32,64", parse_grid)) &&
            (w->n_depths > 0 || parse_list(w, "--octree-depths", w->quick ? "4" : "4,6", parse_depth)) &&
-           (w->n_sizes > 0 || parse_list(w, "--sizes", w->quick ? "128x128" : "256x256", parse_size));
+           (w->n_sizes > 0 || parse_list(w, "--sizes", w->quick ? "128x128" : "256x256", parse_size)) && check_drafts(w);
 }
 
 /* --- the work --- */

@@ -20,6 +20,9 @@ typedef struct trade_approx {
 } trade_approx;
 
 enum { TRADE_EXACT = 0, TRADE_APPROXES = 5 };
+/* What a cell may remember: settings_cells, and the words for them. */
+enum { TRADE_CELLS = 3 };
+extern const char *const trade_cells[TRADE_CELLS];
 extern const trade_approx trade_approxes[TRADE_APPROXES];
 
 /* The words of the command line; a list of length 0, methods 0: not given. */
@@ -27,6 +30,7 @@ extern const trade_approx trade_approxes[TRADE_APPROXES];
 typedef struct trade_words {
     const char *directory;
     unsigned methods; /* bits, by place in tool_methods */
+    unsigned cells;   /* bits, by settings_cells */
     uint32_t grids[TRADE_LIST_MAX][3], depths[TRADE_LIST_MAX], sizes[TRADE_LIST_MAX][2];
     uint32_t n_grids, n_depths, n_sizes, rounds;
     bool quick, quiet, wants_help;
@@ -56,6 +60,7 @@ typedef struct trade_scene {
 typedef struct trade_group {
     trade_scene *scene;
     uint32_t width, height;
+    aset_view view; /* a model's depends on the picture's shape */
     uint8_t *exact; /* the exact picture's pixels; NULL until one is needed */
     uint64_t base;  /* microseconds of the fastest exact MSET (without one: of the fastest exact setting) */
 } trade_group;
@@ -65,10 +70,11 @@ typedef struct trade_setting {
     const aset_method *method;
     uint32_t grid[3], tree_depth; /* 0: the method has none */
     unsigned approx;              /* place in trade_approxes */
-    double curtail;
-    size_t need;              /* bytes of the arena besides the scene's */
-    char *key;                /* the first fields of its CSV row */
-    uint64_t *build, *render; /* microseconds of each round; 0: not measured yet */
+    settings_cells cells;         /* other than flat: a draft */
+    double curtail;               /* 0 for a draft too, to which it does not apply */
+    size_t need;                  /* bytes of the arena besides the scene's */
+    char *key;                    /* the first fields of its CSV row */
+    uint64_t *build, *render;     /* microseconds of each round; 0: not measured yet */
     bool has_figures;
     trade_figures figures;
     trade_time build_time, render_time;
@@ -96,6 +102,11 @@ bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names);
 void trade_free(trade *t);
 
 /* --- trade_run.c --- */
+
+/* Whether it is a draft and nothing else: no scene and no space, the source goes straight into the baker. */
+bool trade_is_streamed(const trade_setting *s);
+/* Finds a draft's need by baking it. need holds what is needed before the bake and is a draft's afterwards. */
+bool trade_find_need(trade_setting *s);
 
 /* Draws a setting once into pixels (R, G, B, no gaps); times in microseconds, figures without the error. */
 bool trade_draw(const trade *t, const trade_setting *s, uint8_t *pixels, trade_figures *figures, uint64_t *build_us,

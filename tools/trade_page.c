@@ -28,19 +28,19 @@ static const char head[] =
     "</style>\n</head>\n<body>\n<h1>The trade, measured</h1>\n";
 
 static const char reading[] =
-    "<p>Each row is one setting: a way to divide the space, how finely, and which rays may take the average texture of a "
-    "cell "
-    "instead of testing objects. <b>time</b> is building and drawing together, as a multiple of the fastest exact mset "
-    "picture "
-    "of the same scene and size (without one: of the fastest exact picture); seconds are medians, with the smallest and the "
-    "largest of all rounds behind them. <b>bytes</b> are the peak of the arena: scene, structure, textures and the stack of "
-    "rays, without the picture. <b>PSNR</b> is the error against the exact picture: higher is closer, about 20 dB is a "
-    "draft that "
-    "one recognises, 40 dB hard to tell apart, and 99 dB means equal.</p>\n"
+    "<p>Each row is one setting: a way to divide the space, how finely, and which rays may take what a cell "
+    "remembers instead of testing objects: its average texture (<b>flat</b> cells), or a facet of a draft, on the cell's "
+    "side (<b>normal</b>) or where the surface lies (<b>plane</b>). A draft with all rays approximate keeps no scene and no "
+    "space, and stands under mset for grid too. <b>time</b> is building and drawing together, as a multiple of the fastest "
+    "exact mset picture of the same scene and size (without one: of the fastest exact picture); seconds are medians, with "
+    "the smallest and the "
+    "largest of all rounds behind them, and without the reading of the scene. <b>bytes</b> are the peak of the arena: "
+    "scene, structure, textures and the stack of rays, without the picture; of a draft, what its baker takes if free to. "
+    "<b>PSNR</b> is the error against the exact picture: higher is closer, about 20 dB is a draft that one recognises, 40 "
+    "dB hard to tell apart, and 99 dB means equal.</p>\n"
     "<p>A setting marked <b>best</b> is one that no other beats, that is, no other is as good in time, bytes and error "
     "and better in at least one of them. Choose among the best: the fastest that is close enough and fits into your memory. "
-    "Where "
-    "the spread of two rows' seconds overlaps, their order in time is chance, and so may be a mark.</p>\n";
+    "Where the spread of two rows' seconds overlaps, their order in time is chance, and so may be a mark.</p>\n";
 
 static void print_escaped(FILE *f, const char *text) {
     for (; *text != 0; text++) {
@@ -104,9 +104,11 @@ static bool print_picture(const trade *t, FILE *f, const trade_setting *s, unsig
     trade_figures figures;
     uint64_t build_us, render_us;
     uint8_t *pixels = malloc((size_t)group->width * group->height * 3);
+    bool is_drafted = s->cells != CELLS_FLAT;
     char *path =
-        trade_path(t, "%td-%s-%" PRIu32 "x%" PRIu32 "-%u-%s.png", group - t->groups + 1, group->scene->label, group->width,
-                   group->height, number, s->approx == TRADE_EXACT ? "exact" : trade_approxes[s->approx].kinds);
+        trade_path(t, "%td-%s-%" PRIu32 "x%" PRIu32 "-%u-%s%s%s.png", group - t->groups + 1, group->scene->label,
+                   group->width, group->height, number, s->approx == TRADE_EXACT ? "exact" : trade_approxes[s->approx].kinds,
+                   is_drafted ? "-" : "", is_drafted ? trade_cells[s->cells] : "");
     bool done = pixels != NULL && path != NULL && trade_draw(t, s, pixels, &figures, &build_us, &render_us) &&
                 write_picture(path, group, pixels);
     if (pixels == NULL) {
@@ -119,8 +121,10 @@ static bool print_picture(const trade *t, FILE *f, const trade_setting *s, unsig
         (void)fprintf(f, "\"><figcaption>%s%s: %s ", s->approx == TRADE_EXACT ? "" : "approximate ",
                       trade_approxes[s->approx].text, aset_method_name(s->method));
         print_grid(f, s);
-        (void)fprintf(f, "%s, time %.2f, %" PRIu64 " bytes, ",
-                      s->curtail > 0 || s->approx == TRADE_EXACT ? "" : ", no curtailment", s->time, s->figures.peak);
+        (void)fprintf(f, "%s%s%s, time %.2f, %" PRIu64 " bytes, ", is_drafted ? ", cells " : "",
+                      is_drafted ? trade_cells[s->cells] : "",
+                      s->curtail > 0 || s->approx == TRADE_EXACT || is_drafted ? "" : ", no curtailment", s->time,
+                      s->figures.peak);
         (void)fprintf(f, s->figures.rmse > 0 ? "%.1f dB" : "equal", s->figures.psnr);
         (void)fputs("</figcaption></figure>\n", f);
     }
@@ -133,12 +137,15 @@ static bool is_closer(const trade_setting *a, const trade_setting *b) {
     return a->figures.rmse < b->figures.rmse || (a->figures.rmse <= b->figures.rmse && a->time < b->time);
 }
 
-/* For a kind of approximation the closest of the best settings (of equal ones the fastest); where none is best, of all. */
-static const trade_setting *choose_picture(const trade *t, const trade_group *group, unsigned approx) {
+/*
+ * For a kind of approximation and of cells the closest of the best settings (of equal ones the fastest); where none is best,
+ * of all. NULL: there are none.
+ */
+static const trade_setting *choose_picture(const trade *t, const trade_group *group, unsigned approx, int cells) {
     const trade_setting *chosen = NULL;
     for (uint32_t i = 0; i < t->n_settings; i++) {
         const trade_setting *s = &t->settings[i];
-        if (s->group == group && s->approx == approx &&
+        if (s->group == group && s->approx == approx && (int)s->cells == cells &&
             (chosen == NULL || s->best > chosen->best || (s->best == chosen->best && is_closer(s, chosen)))) {
             chosen = s;
         }
@@ -164,8 +171,9 @@ static void print_row(FILE *f, const trade_setting *s) {
     (void)fprintf(f, "<tr%s><td>%s</td><td>%s</td><td class=\"n\">", s->best ? " class=\"best\"" : "", s->best ? "best" : "",
                   aset_method_name(s->method));
     print_grid(f, s);
-    (void)fprintf(f, "</td><td>%s</td><td>", trade_approxes[s->approx].text);
-    if (s->approx != TRADE_EXACT) {
+    (void)fprintf(f, "</td><td>%s</td><td>%s</td><td>", trade_approxes[s->approx].text,
+                  s->approx != TRADE_EXACT ? trade_cells[s->cells] : "");
+    if (s->approx != TRADE_EXACT && s->cells == CELLS_FLAT) {
         (void)fprintf(f, s->curtail > 0 ? "%g" : "off", s->curtail);
     }
     (void)fprintf(f, "</td><td class=\"n\">%.3f</td>", s->time);
@@ -194,8 +202,10 @@ static bool print_table(const trade *t, FILE *f, const trade_group *group) {
     (void)fputs(
         "<div class=\"scroll\"><table>\n<thead><tr><th></th><th>method</th><th "
         "class=\"n\">divisions</th><th>approximate</th>"
-        "<th>curtail</th><th class=\"n\">time, exact<br>mset = 1</th><th class=\"n\">build, s</th><th class=\"n\">min-max, s</th>"
-        "<th class=\"n\">render, s</th><th class=\"n\">min-max, s</th><th class=\"n\">bytes</th><th class=\"n\">PSNR, dB</th>"
+        "<th>cells</th><th>curtail</th><th class=\"n\">time, exact<br>mset = 1</th><th class=\"n\">build, s</th><th "
+        "class=\"n\">min-max, s</th>"
+        "<th class=\"n\">render, s</th><th class=\"n\">min-max, s</th><th class=\"n\">bytes</th><th class=\"n\">PSNR, "
+        "dB</th>"
         "<th class=\"n\">SSIM</th><th class=\"n\">largest<br>difference</th><th class=\"n\">pixels<br>differing, %</th>"
         "<th class=\"n\">tests<br>a ray</th><th class=\"n\">cells<br>a ray</th></tr></thead>\n<tbody>\n",
         f);
@@ -221,14 +231,17 @@ static bool print_group(const trade *t, FILE *f, const trade_group *group, char 
     (void)fprintf(f,
                   ", %" PRIu32 "x%" PRIu32 "</h2>\n<p>%" PRIu32 " objects, %zu bytes of them; %" PRIu32 " settings, %" PRIu32
                   " of them best; %" PRIu32
-                  " round%s; time 1 is %.4f s. Below, for each kind of approximation, the closest of the "
-                  "best.</p>\n"
+                  " round%s; time 1 is %.4f s. Below, for each kind of approximation and of cells, the "
+                  "closest of the best.</p>\n"
                   "<div class=\"pictures\">\n",
                   group->width, group->height, counts->objects, group->scene->loaded.scene_bytes, n, n_best, t->rounds,
                   t->rounds > 1 ? "s" : "", 1e-6 * (double)group->base);
     bool done = true;
-    for (unsigned approx = 0; done && approx < TRADE_APPROXES; approx++) {
-        done = print_picture(t, f, choose_picture(t, group, approx), approx);
+    for (int cells = 0; cells < TRADE_CELLS; cells++) {
+        for (unsigned approx = 0; done && approx < TRADE_APPROXES; approx++) {
+            const trade_setting *s = choose_picture(t, group, approx, cells);
+            done = s == NULL || print_picture(t, f, s, approx);
+        }
     }
     (void)fputs("</div>\n", f);
     for (int i = 0; done && i < TRADE_PLOTS; i++) {

@@ -18,7 +18,13 @@ const trade_approx trade_approxes[TRADE_APPROXES] = {
     {"shadow", "shadow rays", ASET_SHADOW, 0},
     {"primary", "eye rays", ASET_PRIMARY, 0},
 };
+const char *const trade_cells[TRADE_CELLS] = {"flat", "normal", "plane"};
 static const double curtails[] = {0.5, 0};
+/* Of trade_approxes, those that a draft is tried with: everything, and shadows beside exact eye rays. */
+static const unsigned draft_approxes[] = {2, 3};
+
+/* Of one space: the exact setting, flat ones with and without curtailment, drafts. */
+#define SETTINGS_OF_SPACE (2u * TRADE_APPROXES + (TRADE_CELLS - 1u) * 2u)
 
 /* --- scenes --- */
 
@@ -30,7 +36,8 @@ static bool open_procedural(tool_source *source, const char *name) {
     const aset_procedural *scene = aset_procedural_find(word);
     uint32_t size = 0;
     if (scene == NULL) {
-        tool_error(name, 0, "neither an .nff file nor a procedural scene; aset scene --help lists those");
+        tool_error(name, 0,
+                   "neither an .nff, .obj, .stl or .ply file nor a procedural scene; aset scene --help lists those");
         return false;
     }
     if (name[length] == ':' && !tool_parse_count(name, name + length + 1, 1, scene->largest_size, &size)) {
@@ -50,12 +57,34 @@ static bool open_procedural(tool_source *source, const char *name) {
     return true;
 }
 
-/* FNV-1a (Fowler, Noll and Vo) of the scene's text and the program's version. */
-static uint64_t hash_source(const tool_source *source) {
-    uint64_t hash = UINT64_C(14695981039346656037);
-    for (const char *c = ASET_VERSION; *c != 0; c++) {
-        hash = (hash ^ (unsigned char)*c) * UINT64_C(1099511628211);
+/* FNV-1a (Fowler, Noll and Vo). */
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size) {
+    const unsigned char *c = bytes;
+    for (size_t i = 0; i < size; i++) {
+        hash = (hash ^ c[i]) * UINT64_C(1099511628211);
     }
+    return hash;
+}
+
+/* Of what materials are drawn by: those of a model may come from other files. */
+static uint64_t hash_materials(uint64_t hash, const aset_scene *scene) {
+    for (uint32_t i = 0; i < scene->counts.materials; i++) {
+        const aset_material *m = &scene->materials[i];
+        hash = hash_bytes(hash, &m->fill, sizeof m->fill);
+        hash = hash_bytes(hash, &m->diffuse, sizeof m->diffuse);
+        hash = hash_bytes(hash, &m->specular, sizeof m->specular);
+        hash = hash_bytes(hash, &m->shine, sizeof m->shine);
+#if ASET_WITH_REFRACTION
+        hash = hash_bytes(hash, &m->transmittance, sizeof m->transmittance);
+        hash = hash_bytes(hash, &m->refraction_index, sizeof m->refraction_index);
+#endif
+    }
+    return hash;
+}
+
+/* Of the scene's text and the program's version. */
+static uint64_t hash_source(const tool_source *source) {
+    uint64_t hash = hash_bytes(UINT64_C(14695981039346656037), ASET_VERSION, sizeof ASET_VERSION - 1);
     hash = (hash ^ ASET_REAL_BITS) * UINT64_C(1099511628211);
     rewind(source->stream);
     for (int c; (c = getc(source->stream)) != EOF;) {
@@ -64,11 +93,17 @@ static uint64_t hash_source(const tool_source *source) {
     return hash;
 }
 
-/* The last part of the name, without .nff, in letters that every file system and page takes. */
+/* Whether it is a file's name rather than that of a procedural scene. */
+static bool is_file(const char *name) {
+    return tool_has_extension(name, ".nff") || tool_has_extension(name, ".obj") || tool_has_extension(name, ".stl") ||
+           tool_has_extension(name, ".ply");
+}
+
+/* The last part of the name, without .nff or the like, in letters that every file system and page takes. */
 static char *make_label(const char *name) {
     const char *slash = strrchr(name, '/');
     name = slash != NULL ? slash + 1 : name;
-    size_t length = strlen(name) - (tool_has_extension(name, ".nff") ? 4 : 0);
+    size_t length = strlen(name) - (is_file(name) ? 4 : 0);
     char *label = calloc(length + 1, 1);
     for (size_t i = 0; label != NULL && i < length; i++) {
         static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
@@ -86,8 +121,7 @@ static bool open_scene(trade_scene *scene, const char *name) {
         tool_error(name, 0, "no memory for its name");
         return false;
     }
-    if (!(tool_has_extension(name, ".nff") ? tool_source_open(&scene->source, name)
-                                           : open_procedural(&scene->source, name))) {
+    if (!(is_file(name) ? tool_source_open(&scene->source, name) : open_procedural(&scene->source, name))) {
         return false;
     }
     scene->hash = hash_source(&scene->source);
@@ -95,7 +129,50 @@ static bool open_scene(trade_scene *scene, const char *name) {
         scene->loaded.block = NULL; /* given back already */
         return false;
     }
+    scene->hash = hash_materials(scene->hash, &scene->loaded.scene);
     return true;
+}
+
+/* --- views --- */
+
+static aset_status keep_view(void *context, const aset_view *view) {
+    *(aset_view *)context = *view;
+    return ASET_OK;
+}
+
+static aset_status pass_background(void *context, const aset_colour *colour) {
+    (void)context;
+    (void)colour;
+    return ASET_OK;
+}
+
+static aset_status pass_light(void *context, const aset_light *light) {
+    (void)context;
+    (void)light;
+    return ASET_OK;
+}
+
+/* A scene file says where it is seen from; a model is seen from so far that it fits into a picture of this shape. */
+static bool find_view(trade_group *group) {
+    const tool_source *source = &group->scene->source;
+    aset_stage_options options = source->stage;
+    aset_sink sink;
+    group->view = group->scene->loaded.scene.view;
+    if (source->format == TOOL_NFF) {
+        return true;
+    }
+    memset(&sink, 0, sizeof sink);
+    sink.context = &group->view;
+    sink.view = keep_view;
+    sink.background = pass_background;
+    sink.light = pass_light;
+    options.no_ground = true; /* the sink takes none */
+    options.aspect = (aset_real)group->width / (aset_real)group->height;
+    aset_status status = aset_stage_emit(&sink, &source->low, &source->high, &options);
+    if (status != ASET_OK) {
+        tool_error(source->path, 0, "its view: %s", aset_status_text(status));
+    }
+    return status == ASET_OK;
 }
 
 /* --- the plan --- */
@@ -113,8 +190,55 @@ static bool is_planned(const trade *t, const trade_group *group, const aset_meth
     return false;
 }
 
+static trade_setting *add_setting(trade *t, trade_group *group, const aset_method *method, const aset_space_options *options,
+                                  unsigned approx) {
+    trade_setting *s = &t->settings[t->n_settings++];
+    s->group = group;
+    s->method = method;
+    memcpy(s->grid, options->divisions, sizeof s->grid);
+    s->tree_depth = options->depth;
+    s->approx = approx;
+    return s;
+}
+
+/* Another picture of the same draft: of another size, or with the cells' sides for their planes. */
+static const trade_setting *find_same_draft(const trade *t, const trade_setting *s) {
+    for (const trade_setting *other = t->settings; other != s; other++) {
+        if (other->group->scene == s->group->scene && other->method == s->method && other->approx == s->approx &&
+            other->cells != CELLS_FLAT && memcmp(other->grid, s->grid, sizeof s->grid) == 0) {
+            return other;
+        }
+    }
+    return NULL;
+}
+
+/* With everything approximate, drafts of mset and of grid are the same: one of them is enough. */
+static bool plan_drafts(trade *t, const trade_words *w, trade_group *group, const aset_method *method,
+                        const aset_space_options *options, const aset_space_size *size) {
+    bool is_second = method == &aset_grid && (w->methods & 1u) != 0; /* tool_methods[0] is mset */
+    bool done = true;
+    for (unsigned cells = CELLS_NORMAL; cells < TRADE_CELLS; cells++) {
+        for (size_t i = 0; done && (w->cells >> cells & 1) != 0 && i < sizeof draft_approxes / sizeof draft_approxes[0];
+             i++) {
+            trade_setting *s = add_setting(t, group, method, options, draft_approxes[i]);
+            s->cells = (settings_cells)cells;
+            bool is_streamed = trade_is_streamed(s);
+            if (is_streamed && is_second) {
+                memset(s, 0, sizeof *s);
+                t->n_settings--;
+                continue;
+            }
+            const trade_setting *same = find_same_draft(t, s);
+            s->need = same != NULL ? same->need : ASET_BYTES_SCRATCH(ASET_DEPTH_DEFAULT) + (is_streamed ? 0 : size->total);
+            done = same != NULL || trade_find_need(s);
+        }
+    }
+    return done;
+}
+
 /* All ways to draw over one space. The need is render's: the scratch, and the space while built or with its summary. */
-static bool plan_space(trade *t, trade_group *group, const aset_method *method, const uint32_t grid[3], uint32_t depth) {
+static bool plan_space(trade *t, const trade_words *w, trade_group *group, const aset_method *method, const uint32_t grid[3],
+                       uint32_t depth) {
     trade_scene *scene = group->scene;
     aset_space_size size;
     size_t summary;
@@ -132,19 +256,15 @@ static bool plan_space(trade *t, trade_group *group, const aset_method *method, 
         return false;
     }
     size_t built = size.cells + size.references + size.voxels + summary, scratch = ASET_BYTES_SCRATCH(ASET_DEPTH_DEFAULT);
-    for (unsigned approx = 0; approx < TRADE_APPROXES; approx++) {
+    unsigned n_approxes = (w->cells >> CELLS_FLAT & 1) != 0 ? TRADE_APPROXES : 1;
+    for (unsigned approx = 0; approx < n_approxes; approx++) {
         for (size_t c = 0; c < (approx == TRADE_EXACT ? 1 : sizeof curtails / sizeof curtails[0]); c++) {
-            trade_setting *s = &t->settings[t->n_settings++];
-            s->group = group;
-            s->method = method;
-            memcpy(s->grid, options.divisions, sizeof s->grid);
-            s->tree_depth = depth;
-            s->approx = approx;
+            trade_setting *s = add_setting(t, group, method, &options, approx);
             s->curtail = curtails[c];
             s->need = scratch + (approx != TRADE_EXACT && built > size.total ? built : size.total);
         }
     }
-    return true;
+    return (method != &aset_mset && method != &aset_grid) || plan_drafts(t, w, group, method, &options, &size);
 }
 
 static bool plan_group(trade *t, const trade_words *w, trade_group *group) {
@@ -155,7 +275,7 @@ static bool plan_group(trade *t, const trade_words *w, trade_group *group) {
         bool slices = method == &aset_mset || method == &aset_set || method == &aset_grid;
         uint32_t n = method == &aset_brute ? 1 : slices ? w->n_grids : w->n_depths;
         for (uint32_t i = 0; done && (w->methods >> m & 1) != 0 && i < n; i++) {
-            done = plan_space(t, group, method, slices ? w->grids[i] : none,
+            done = plan_space(t, w, group, method, slices ? w->grids[i] : none,
                               slices || method == &aset_brute ? 0 : w->depths[i]);
         }
     }
@@ -182,7 +302,7 @@ static bool plan_memory(trade *t) {
 }
 
 bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names) {
-    size_t per_group = (size_t)2 * TRADE_APPROXES * 8 * TRADE_LIST_MAX; /* 8 methods at the most, each with a full list */
+    size_t per_group = (size_t)SETTINGS_OF_SPACE * 8 * TRADE_LIST_MAX; /* 8 methods at the most, each with a full list */
     t->directory = w->directory;
     t->rounds = w->rounds;
     t->quiet = w->quiet;
@@ -197,8 +317,10 @@ bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names) 
         }
         for (uint32_t k = 0; k < w->n_sizes; k++) {
             trade_group *group = &t->groups[t->n_groups++];
-            *group = (trade_group){scene, w->sizes[k][0], w->sizes[k][1], NULL, 0};
-            if (!plan_group(t, w, group)) {
+            group->scene = scene;
+            group->width = w->sizes[k][0];
+            group->height = w->sizes[k][1];
+            if (!find_view(group) || !plan_group(t, w, group)) {
                 return false;
             }
         }

@@ -3,6 +3,7 @@
  *
  * Shapes and filling tell the settings apart, so that colour is only a help: a shape for each kind of approximation,
  * filled with curtailment and open without, the larger the finer the divisions, in a ring where no other setting beats it.
+ * A draft's shape is open and has a mark within: a dot if its cells remember planes, a cross for normals.
  * Pictures equal to the exact one (99 dB) stand on a line of their own above all others.
  *
  * gnuplot gets the script on its standard input and writes SVG on its standard output; no shell is in between.
@@ -30,6 +31,18 @@ static const struct {
     int shape;
     const char *colour;
 } styles[TRADE_APPROXES] = {{5, "#000000"}, {7, "#0072b2"}, {9, "#d55e00"}, {11, "#009e73"}, {13, "#cc79a7"}};
+
+/*
+ * Blocks of points: two for each approximation (open, filled), one for each kind of drafts and approximation, the rings.
+ */
+enum { BLOCK_DRAFTS = 2 * TRADE_APPROXES, BLOCK_RINGS = (1 + TRADE_CELLS) * TRADE_APPROXES };
+
+/* A draft's shape is this much larger, for the mark within it; by settings_cells: gnuplot's number of the mark, its size. */
+#define DRAFT_SIZE 1.4
+static const struct {
+    int shape;
+    double size;
+} marks[TRADE_CELLS] = {{0, 0}, {1, 0.45}, {7, 0.3}};
 
 /* What the axes of all panels of a plot show. */
 typedef struct scale {
@@ -129,7 +142,12 @@ static void print_head(FILE *f, const scale *a, int height) {
     print_tics(f, a);
 }
 
-/* The points of a panel, one data block for each approximation and each side of curtailment, and one for the rings. */
+static int block_of(const trade_setting *s) {
+    return s->cells == CELLS_FLAT ? 2 * (int)s->approx + (s->curtail > 0)
+                                  : BLOCK_DRAFTS + ((int)s->cells - 1) * TRADE_APPROXES + (int)s->approx;
+}
+
+/* The points of a panel, block by block. */
 static void print_points(FILE *f, const scale *a, const aset_method *method) {
     uint32_t finest = 1;
     for (uint32_t i = 0; i < a->t->n_settings; i++) {
@@ -137,11 +155,11 @@ static void print_points(FILE *f, const scale *a, const aset_method *method) {
         uint32_t n = s->tree_depth > 0 ? 1u << s->tree_depth : s->grid[0];
         finest = s->group == a->group && s->method == method && n > finest ? n : finest;
     }
-    for (int block = 0; block <= 2 * TRADE_APPROXES; block++) {
+    for (int block = 0; block <= BLOCK_RINGS; block++) {
         (void)fprintf(f, "$d%d << EOD\nNaN NaN 1\n", block);
         for (uint32_t i = 0; i < a->t->n_settings; i++) {
             const trade_setting *s = &a->t->settings[i];
-            bool in = block == 2 * TRADE_APPROXES ? s->best : block == 2 * (int)s->approx + (s->curtail > 0);
+            bool in = block == BLOCK_RINGS ? s->best : block == block_of(s);
             if (s->group == a->group && s->method == method && in) {
                 uint32_t n = s->tree_depth > 0 ? 1u << s->tree_depth : s->grid[0];
                 double size = 0.95 + 0.2 * log2((n > 0 ? (double)n : 1) / finest);
@@ -171,10 +189,28 @@ static void print_panel(FILE *f, const scale *a, uint32_t k, int height) {
                       "variable lc '%s', ",
                       2 * i, styles[i].shape - 1, styles[i].colour, 2 * i + 1, styles[i].shape, styles[i].colour);
     }
-    (void)fprintf(f, "$d%d using 1:2 with points pt 6 ps 1.7 lc '#000000'\nunset label 1\n", 2 * TRADE_APPROXES);
+    for (int block = BLOCK_DRAFTS; block < BLOCK_RINGS; block++) {
+        int i = (block - BLOCK_DRAFTS) % TRADE_APPROXES, cells = 1 + (block - BLOCK_DRAFTS) / TRADE_APPROXES;
+        (void)fprintf(f,
+                      "$d%d using 1:2:($3*%g) with points pt %d ps variable lc '%s', "
+                      "$d%d using 1:2 with points pt %d ps %g lc '#000000', ",
+                      block, DRAFT_SIZE, styles[i].shape - 1, styles[i].colour, block, marks[cells].shape,
+                      marks[cells].size);
+    }
+    (void)fprintf(f, "$d%d using 1:2 with points pt 6 ps 1.7 lc '#000000'\nunset label 1\n", BLOCK_RINGS);
 }
 
-static void print_legend(FILE *f, int height) {
+/* Whether the group has such settings; the legend does not explain what is not there. */
+static bool has_cells(const scale *a, settings_cells cells) {
+    bool has = false;
+    for (uint32_t i = 0; i < a->t->n_settings; i++) {
+        const trade_setting *s = &a->t->settings[i];
+        has = has || (s->group == a->group && s->cells == cells && s->approx != TRADE_EXACT);
+    }
+    return has;
+}
+
+static void print_legend(FILE *f, const scale *a, int height) {
     (void)fprintf(
         f,
         "unset border\nunset tics\nunset xlabel\nunset ylabel\nunset title\nunset grid\nunset logscale\n"
@@ -185,6 +221,13 @@ static void print_legend(FILE *f, int height) {
     for (int i = 0; i < TRADE_APPROXES; i++) {
         (void)fprintf(f, "NaN with points pt %d ps 0.95 lc '%s' title '%s%s', ", styles[i].shape, styles[i].colour,
                       i > TRADE_EXACT ? "approximate: " : "", trade_approxes[i].text);
+    }
+    for (int cells = CELLS_NORMAL; cells < TRADE_CELLS; cells++) {
+        if (has_cells(a, (settings_cells)cells)) {
+            (void)fprintf(f, "NaN with points pt %d ps %g lc '#000000' title '%s within: draft, cells %s', ",
+                          marks[cells].shape, marks[cells].size, cells == CELLS_NORMAL ? "cross" : "dot",
+                          trade_cells[cells]);
+        }
     }
     (void)fputs("NaN with points pt 6 ps 0.95 lc '#000000' title 'open: no curtailment', "
                 "NaN with points pt 6 ps 0.5 lc '#000000' title 'smaller: fewer divisions', "
@@ -265,7 +308,7 @@ char *trade_plot(const trade *t, const trade_group *group, int against, bool *ab
     for (uint32_t k = 0; k < a.n_methods; k++) {
         print_panel(script, &a, k, height);
     }
-    print_legend(script, height);
+    print_legend(script, &a, height);
     char *svg = fflush(script) == 0 ? run_gnuplot(script, absent) : NULL;
     (void)fclose(script);
     return svg;

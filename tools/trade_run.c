@@ -1,9 +1,14 @@
 /*
- * trade_run.c - one measurement of one setting: space and summary built, picture drawn, in an arena of exactly the need.
+ * trade_run.c - one measurement of one setting: space and summary or draft built, picture drawn, in an arena of exactly the
+ * need.
  *
  * The scene stays loaded in an arena of its own. Allocations only add up, so the scene's bytes and the second arena's are
- * together those of the one arena that `aset render --memory` would need, not one more: they are the setting's peak. The
- * block is the same for all settings and was written to before, so that no setting pays for fresh pages.
+ * together those of the one arena that `aset render --memory` would need, not one more: they are the setting's peak. A
+ * streamed draft has no scene in its arena, and none counted. The block is the same for all settings and was written to
+ * before, so that no setting pays for fresh pages.
+ *
+ * A draft's need is what its bake took where it could have had more, and the baker, which goes by the room that it has,
+ * takes the same steps in an arena of exactly that. It would do with less, in more passes over the source.
  */
 #include "metrics.h"
 #include "trade.h"
@@ -16,35 +21,82 @@ static uint64_t microseconds_since(double start) {
     return us > 1.0 ? (uint64_t)(us + 0.5) : 1; /* 0 means not measured */
 }
 
-static aset_status build(const trade_setting *s, aset_arena *arena, aset_space *space, aset_summary *summary,
-                         aset_scratch *scratch) {
+/* What a picture is drawn from, all of it in the arena. */
+typedef struct drawing {
+    aset_arena arena;
+    aset_scratch scratch;
+    aset_space space;
+    aset_summary summary;
+    aset_draft draft;
+    double reading_s; /* of the source, while baking */
+    bool told;        /* the source has failed and said so */
+} drawing;
+
+bool trade_is_streamed(const trade_setting *s) {
+    const trade_approx *approx = &trade_approxes[s->approx];
+    return s->cells != CELLS_FLAT && approx->mask == ASET_ALL_KINDS && approx->level == 0;
+}
+
+/* One reading into the baker. */
+static aset_status bake_pass(drawing *d, tool_source *source, aset_baker *baker, bool *again) {
+    tool_batch batch;
+    aset_sink sink = tool_batch_sink(&batch, NULL, baker);
+    double start = tool_seconds();
+    d->told = !tool_source_read(source, &sink);
+    aset_status status = d->told ? ASET_ERR_READ : tool_batch_end(&batch);
+    d->reading_s += tool_seconds() - start - batch.seconds;
+    return status == ASET_OK ? aset_baker_pass(baker, again) : status;
+}
+
+static aset_status bake(const trade_setting *s, drawing *d) {
+    const trade_group *group = s->group;
+    tool_source *source = &group->scene->source;
+    aset_baker baker;
+    aset_bake_options options;
+    bool again = true;
+    memset(&options, 0, sizeof options);
+    memcpy(options.divisions, s->grid, sizeof options.divisions);
+    source->stage.aspect = (aset_real)group->width / (aset_real)group->height;
+    aset_status status = aset_baker_init(&baker, &d->arena, &options);
+    while (status == ASET_OK && again) {
+        status = bake_pass(d, source, &baker, &again);
+    }
+    return status == ASET_OK ? aset_baker_finish(&d->draft, &baker) : status;
+}
+
+/* In the order of `aset render`. d is all zeros but for the arena. */
+static aset_status build(const trade_setting *s, drawing *d) {
     const aset_scene *scene = &s->group->scene->loaded.scene;
     aset_space_options options;
     memset(&options, 0, sizeof options);
     memcpy(options.divisions, s->grid, sizeof options.divisions);
     options.depth = s->tree_depth;
-    aset_status status = aset_scratch_init(scratch, ASET_DEPTH_DEFAULT, arena);
-    if (status == ASET_OK) {
-        status = aset_space_build(space, scene, s->method, &options, arena);
+    aset_status status = aset_scratch_init(&d->scratch, ASET_DEPTH_DEFAULT, &d->arena);
+    if (status == ASET_OK && !trade_is_streamed(s)) {
+        status = aset_space_build(&d->space, scene, s->method, &options, &d->arena);
     }
-    if (status == ASET_OK && s->approx != TRADE_EXACT) {
-        status = aset_summary_build(summary, space, aset_summary_capacity(scene), arena);
+    if (status == ASET_OK && s->cells != CELLS_FLAT) {
+        status = bake(s, d);
+    } else if (status == ASET_OK && s->approx != TRADE_EXACT) {
+        status = aset_summary_build(&d->summary, &d->space, aset_summary_capacity(scene), &d->arena);
     }
     return status;
 }
 
-static aset_status render(const trade_setting *s, const aset_space *space, const aset_summary *summary,
-                          aset_scratch *scratch, uint8_t *pixels, aset_statistics *statistics) {
+static aset_status render(const trade_setting *s, drawing *d, uint8_t *pixels, aset_statistics *statistics) {
     const trade_group *group = s->group;
     const trade_approx *approx = &trade_approxes[s->approx];
+    bool is_drafted = s->cells != CELLS_FLAT, is_streamed = trade_is_streamed(s);
     aset_tracer tracer;
     aset_picture picture;
-    aset_view view = group->scene->loaded.scene.view;
+    aset_view view = is_streamed ? d->draft.stage.view : group->view;
     memset(&tracer, 0, sizeof tracer);
     memset(&picture, 0, sizeof picture);
-    tracer.scene = &group->scene->loaded.scene;
-    tracer.space = space;
-    tracer.summary = s->approx != TRADE_EXACT ? summary : NULL;
+    tracer.scene = is_streamed ? &d->draft.stage : &group->scene->loaded.scene;
+    tracer.space = is_streamed ? NULL : &d->space;
+    tracer.summary = s->approx != TRADE_EXACT && !is_drafted ? &d->summary : NULL;
+    tracer.draft = is_drafted ? &d->draft : NULL;
+    tracer.draft_sides = s->cells == CELLS_NORMAL;
     tracer.approx_kinds = approx->mask;
     tracer.approx_depth = approx->level;
     tracer.curtail = (aset_real)s->curtail;
@@ -53,28 +105,56 @@ static aset_status render(const trade_setting *s, const aset_space *space, const
     picture.format = ASET_RGB888;
     picture.pixels = pixels;
     picture.stride = (size_t)group->width * 3;
-    return aset_render_rows(&tracer, &view, &picture, 0, group->height, scratch, statistics);
+    return aset_render_rows(&tracer, &view, &picture, 0, group->height, &d->scratch, statistics);
+}
+
+/* False if it is another error than too little memory, of which *size is then enough for one more try. */
+static bool try_need(trade_setting *s, size_t *size, bool *found) {
+    drawing d;
+    memset(&d, 0, sizeof d);
+    void *block = malloc(*size);
+    aset_status status = block != NULL ? aset_arena_init(&d.arena, block, *size) : ASET_ERR_NOMEM;
+    status = status == ASET_OK ? build(s, &d) : status;
+    free(block);
+    *found = status == ASET_OK;
+    s->need = *found ? d.arena.peak : s->need;
+    *size += d.arena.missing;
+    if (block == NULL || (status != ASET_OK && status != ASET_ERR_NOMEM && !d.told)) {
+        tool_error(s->group->scene->name, 0, "trade: a draft: %s", aset_status_text(status));
+    }
+    return block != NULL && (status == ASET_OK || status == ASET_ERR_NOMEM);
+}
+
+bool trade_find_need(trade_setting *s) {
+    size_t size =
+        s->need + 4 * ASET_BYTES_BAKE(s->grid[0], s->grid[1], s->grid[2]) + 65536u; /* two doublings, and a stage */
+    bool found = false, fine = true;
+    while (fine && !found) {
+        fine = try_need(s, &size, &found);
+    }
+    return found;
 }
 
 bool trade_draw(const trade *t, const trade_setting *s, uint8_t *pixels, trade_figures *figures, uint64_t *build_us,
                 uint64_t *render_us) {
-    aset_arena arena;
-    aset_space space;
-    aset_summary summary;
-    aset_scratch scratch;
+    drawing d;
     aset_statistics n;
+    memset(&d, 0, sizeof d);
     memset(&n, 0, sizeof n);
     double start = tool_seconds();
-    aset_status status = aset_arena_init(&arena, t->block, s->need);
+    aset_status status = aset_arena_init(&d.arena, t->block, s->need);
     if (status == ASET_OK) {
-        status = build(s, &arena, &space, &summary, &scratch);
+        status = build(s, &d);
     }
-    *build_us = microseconds_since(start);
+    *build_us = microseconds_since(start + d.reading_s);
     start = tool_seconds();
     if (status == ASET_OK) {
-        status = render(s, &space, &summary, &scratch, pixels, &n);
+        status = render(s, &d, pixels, &n);
     }
     *render_us = microseconds_since(start);
+    if (d.told) {
+        return false;
+    }
     if (status != ASET_OK) {
         tool_error(s->group->scene->name, 0, "trade: %s: %s", s->key, aset_status_text(status));
         return false;
@@ -83,7 +163,7 @@ bool trade_draw(const trade *t, const trade_setting *s, uint8_t *pixels, trade_f
     figures->rays = n.primary + n.shadow + n.reflected + n.refracted;
     figures->tests = n.tests;
     figures->cells = n.cells_visited;
-    figures->peak = s->group->scene->loaded.scene_bytes + s->need;
+    figures->peak = s->need + (trade_is_streamed(s) ? 0 : s->group->scene->loaded.scene_bytes);
     return true;
 }
 

@@ -81,7 +81,10 @@ static char *make_key(const trade_setting *s) {
     if (s->approx == TRADE_EXACT) {
         (void)fprintf(stream, ",%s,,,", approx->kinds);
     } else {
-        (void)fprintf(stream, ",%s,%" PRIu32 ",flat,%g", approx->kinds, approx->level, s->curtail);
+        (void)fprintf(stream, ",%s,%" PRIu32 ",%s,", approx->kinds, approx->level, trade_cells[s->cells]);
+        if (s->cells == CELLS_FLAT) {
+            (void)fprintf(stream, "%g", s->curtail);
+        }
     }
     (void)fprintf(stream, ",%" PRIu32 "x%" PRIu32, s->group->width, s->group->height);
     if (fclose(stream) != 0) {

@@ -1,5 +1,6 @@
 /*
- * baker.h - what the two halves of the baker share: baker.c takes entities and fills bins, draft_write.c makes the words.
+ * baker.h - what the parts of the baker share: baker.c takes entities, sheet.c samples them into bins (bins.c), baker_pass.c
+ * decides between passes, draft_write.c makes the words.
  *
  * The region, one piece of the arena's free bytes:
  *
@@ -7,8 +8,8 @@
  *
  * points and crossings hold the polygon in hand. marks: 64 bits for each block of voxels, empty blocks too. A bin gathers what
  * faces one side of one voxel, in whole numbers only, so that the order of objects cannot matter; bins are found by hashing their keys,
- * voxel * 6 + side, which stand apart from them as a search looks at many. When
- * a pass has ended, the bins of its blocks become raw facets, in the order of voxels and sides.
+ * voxel * 6 + side, which stand apart from them as a search looks at many. When a pass has ended, the bins of its blocks become raw
+ * facets, in the order of voxels and sides.
  */
 #ifndef ASET_APPROX_BAKER_H
 #define ASET_APPROX_BAKER_H
@@ -55,6 +56,19 @@ static inline uint32_t baker_slot(const aset_baker *baker, uint32_t key) {
     }
     return slot;
 }
+
+static inline uint32_t baker_blocks(const aset_baker *b) {
+    return b->blocks[0] * b->blocks[1] * b->blocks[2];
+}
+
+static inline uint32_t baker_block_at(const aset_baker *b, uint32_t x, uint32_t y, uint32_t z) {
+    return ((z / 4) * b->blocks[1] + y / 4) * b->blocks[0] + x / 4;
+}
+
+void bins_clear(aset_baker *b);
+
+/* The bin of a key, made if there is none; NULL: it lies above the ceiling by now, or there is no room at all. */
+bin *bins_find(aset_baker *b, uint32_t key);
 
 /* The bins of the blocks baked in this pass become raw facets, or are only counted if baker->counting. */
 void baker_harvest(aset_baker *baker);

@@ -1,0 +1,311 @@
+/*
+ * baker_pass.c - what happens between the passes of a bake: which objects are kept, where the cells are, how the region is cut up, and
+ * what to do when it is too small.
+ */
+#include "approx/baker.h"
+
+#if ASET_WITH_DRAFTS
+
+/* An object is kept exact if its box's diagonal is at least this part of the scene's. */
+#define KEPT_DIAGONAL R(0.25)
+/* So that the inverse of a column's size is a number in float, and of a ray's, too. */
+#define LEAST_SLACK R(1e-30)
+#define AUTO_LONGEST_MAX 128u
+#define AUTO_LONGEST_MIN 8u
+/* Automatic divisions: bytes of bake for each square of the longest axis' divisions. */
+#define AUTO_BYTES_PER_SQUARE 112u
+/* Textures of a draft: what does not fit shares the nearest. */
+#define TEXTURES_MAX 2048u
+
+/*
+ * Which objects are kept: the largest, no more than ASET_KEPT_MAX, and of equally large ones all or none, so that their order
+ * does not matter.
+ */
+static void choose_kept(aset_baker *b) {
+    aset_vec3 d = vec_sub(b->high, b->low);
+    aset_real least = KEPT_DIAGONAL * KEPT_DIAGONAL * vec_dot(d, d);
+    uint32_t n = 0;
+    for (uint32_t i = 1; i <= b->n_largest && i <= ASET_KEPT_MAX && b->largest[i - 1] >= least; i++) {
+        if (i == b->n_largest || b->largest[i] < b->largest[i - 1]) {
+            n = i;
+        }
+    }
+    b->n_kept = b->options.keep_none ? 0 : n;
+    b->kept_from = n > 0 ? b->largest[n - 1] : 0;
+}
+
+static void choose_divisions(aset_baker *b, size_t bytes, uint32_t longest_max) {
+    aset_vec3 extent = vec_sub(b->high, b->low);
+    uint32_t longest = AUTO_LONGEST_MIN;
+    if (b->options.divisions[0] > 0) {
+        memcpy(b->n, b->options.divisions, sizeof b->n);
+        return;
+    }
+    while (longest + 4 <= longest_max && (uint64_t)(longest + 4) * (longest + 4) * AUTO_BYTES_PER_SQUARE <= bytes) {
+        longest += 4;
+    }
+    for (int a = 0; a < 3; a++) {
+        aset_real share = vec_largest(extent) > 0 ? vec_at(&extent, a) / vec_largest(extent) : 1;
+        b->n[a] = (uint32_t)(share * (aset_real)longest + R(0.999));
+        b->n[a] = b->n[a] > 0 ? b->n[a] : 1;
+    }
+}
+
+/* The box of what the cells hold, a little larger, in numbers that the words can say. */
+static void place_cells(aset_baker *b) {
+    aset_vec3 low = b->low, high = b->high;
+    if (b->n_materials == 0) { /* all objects are kept */
+        low = high = vec(0, 0, 0);
+    }
+    aset_vec3 extent = vec_sub(high, low);
+    aset_real slack = R(1e-3) * vec_largest(extent) + 16 * REAL_UNIT * real_max(vec_largest(low), vec_largest(high));
+    slack = slack > LEAST_SLACK ? slack : vec_largest(extent) > 0 ? LEAST_SLACK : 1;
+    for (int a = 0; a < 3; a++) {
+        aset_real grown = vec_at(&extent, a) + 2 * slack / 16;
+        b->origin[a] = float_of_word(word_of_float(vec_at(&low, a) - slack / 16));
+        b->size[a] = float_of_word(word_of_float(grown / (aset_real)(4 * b->n[a])));
+        b->scale[a] = 1 / b->size[a];
+        b->blocks[a] = (b->n[a] + 3) / 4;
+    }
+}
+
+static size_t fixed_bytes(const aset_baker *b) {
+    return ASET_ROUND((size_t)b->max_points * 3 * sizeof *b->points) + ASET_ROUND((size_t)b->max_points * sizeof *b->crossings) +
+           (size_t)baker_blocks(b) * sizeof *b->marks + ASET_ROUND(b->texture_capacity * sizeof *b->textures);
+}
+
+/* Cuts the region up; the bins of a pass take what the raw facets leave. */
+static void cut_region(aset_baker *b) {
+    unsigned char *at = b->region;
+    b->points = (aset_real *)(void *)at;
+    at += ASET_ROUND((size_t)b->max_points * 3 * sizeof *b->points);
+    b->crossings = (aset_real *)(void *)at;
+    at += ASET_ROUND((size_t)b->max_points * sizeof *b->crossings);
+    b->marks = (uint64_t *)(void *)at;
+    at += (size_t)baker_blocks(b) * sizeof *b->marks;
+    b->textures = (aset_material *)(void *)at;
+    at += ASET_ROUND(b->texture_capacity * sizeof *b->textures);
+    b->after = at;
+    b->raw = (uint64_t *)(void *)(b->region + b->region_bytes);
+    memset(b->marks, 0, (size_t)baker_blocks(b) * sizeof *b->marks);
+}
+
+/* A key, a bin, and the raw facet that it may become. */
+#define BYTES_PER_BIN(b) (sizeof *(b)->keys + (b)->bin_bytes + sizeof *(b)->raw)
+/* The fewest bins worth a pass. */
+#define BINS_MIN 64u
+
+static bool start_pass(aset_baker *b) {
+    size_t left = (size_t)((unsigned char *)(b->raw - b->n_raw) - b->after);
+    size_t capacity = left / BYTES_PER_BIN(b);
+    b->capacity = capacity < UINT32_MAX / 2 ? (uint32_t)capacity : UINT32_MAX / 2;
+    b->ceiling_block = baker_blocks(b);
+    if (b->capacity <= BINS_MIN) {
+        return false;
+    }
+    b->capacity--; /* for the rounding of the keys */
+    b->keys = (uint32_t *)(void *)b->after;
+    b->bins = b->after + ASET_ROUND(b->capacity * sizeof *b->keys);
+    bins_clear(b);
+    if (b->floor_block == 0) {
+        b->report.unseen = 0;
+    }
+    return true;
+}
+
+/* A region of need bytes would have done; there is none now. */
+static aset_status give_up(aset_baker *b, size_t need) {
+    size_t left = b->arena->size - b->arena->used;
+    b->arena->missing = need > left ? need - left : 1;
+    b->phase = PHASE_FAILED;
+    aset_arena_release(b->arena, &b->mark);
+    return ASET_ERR_NOMEM;
+}
+
+/* Memory for one block in which every side is marked. */
+static size_t need_at_most(const aset_baker *b) {
+    size_t sides = 64 * 6;
+    return fixed_bytes(b) + (sides + sides / 4 + 2 * BINS_MIN) * BYTES_PER_BIN(b) +
+           (size_t)b->n_counted * sizeof *b->raw;
+}
+
+/* The most bytes that the region may take. */
+static size_t room_for_region(const aset_baker *b) {
+    size_t left = b->arena->size - b->arena->used, taken = b->arena->used - b->mark.used, most = b->options.bytes;
+    most = most > taken ? most - taken : 0;
+    return (b->options.bytes > 0 && most < left ? most : left) / ASET_ALIGN * ASET_ALIGN;
+}
+
+/* The region, and in it everything for the divisions; wanted: its bytes, 0 for as many as usual. */
+static aset_status start_baking(aset_baker *b, size_t wanted, uint32_t longest_max) {
+    size_t room = room_for_region(b);
+    b->single = b->n_materials <= 1;
+    b->bin_bytes = ASET_ROUND(b->single ? BIN_BYTES_SINGLE : sizeof(bin));
+    b->texture_capacity = b->single ? 1 : TEXTURES_MAX;
+    choose_divisions(b, room, longest_max);
+    place_cells(b);
+    if (wanted == 0) {
+        wanted = b->options.bytes > 0 ? room : ASET_BYTES_BAKE(b->n[0], b->n[1], b->n[2]);
+    }
+    b->region_bytes = wanted < room ? wanted / ASET_ALIGN * ASET_ALIGN : room;
+    while (!b->single && b->texture_capacity > 64 && fixed_bytes(b) > b->region_bytes / 4) {
+        b->texture_capacity /= 2;
+    }
+    b->n_raw = 0;
+    b->n_counted = 0;
+    b->n_textures = 0;
+    b->floor_block = 0;
+    b->counting = false;
+    b->failure = ASET_OK;
+    b->report.voxels = b->report.merged = 0;
+    if (b->region_bytes < fixed_bytes(b) + 2 * BINS_MIN * BYTES_PER_BIN(b)) {
+        b->region_bytes = 0;
+        return give_up(b, need_at_most(b));
+    }
+    b->region = aset_arena_alloc(b->arena, b->region_bytes, ASET_CATEGORY_SCRATCH);
+    cut_region(b);
+    (void)start_pass(b);
+    b->phase = PHASE_BAKE;
+    return ASET_OK;
+}
+
+static void free_region(aset_baker *b) {
+    b->arena->used -= b->region_bytes; /* it was taken last */
+    b->arena->used_by[ASET_CATEGORY_SCRATCH] -= b->region_bytes;
+}
+
+/* The region was too small: once more with a larger one, or coarser if the divisions are ours to choose. */
+static aset_status bake_again(aset_baker *b, size_t need) {
+    uint32_t longest = b->n[0] > b->n[1] ? b->n[0] : b->n[1];
+    longest = longest > b->n[2] ? longest : b->n[2];
+    size_t had = b->region_bytes;
+    bool is_auto = b->options.divisions[0] == 0;
+    free_region(b);
+    size_t room = room_for_region(b);
+    b->stage_sink = aset_counter_sink(&b->counter);
+    if (had < room) {
+        return start_baking(b, had / 4 * 5 < room ? had / 4 * 5 : room, longest);
+    }
+    if (is_auto && longest > AUTO_LONGEST_MIN) {
+        return start_baking(b, 0, longest * 3 / 4 > AUTO_LONGEST_MIN ? longest * 3 / 4 : AUTO_LONGEST_MIN);
+    }
+    return give_up(b, need);
+}
+
+/* The stage takes its memory when all its counts are known; its entities come with the next pass. */
+static aset_status start_stage(aset_baker *b) {
+    b->report.kept = b->counter.counts.objects;
+    if (b->report.kept != b->n_kept) {
+        return ASET_ERR_GEOMETRY; /* not the same source as in the first pass */
+    }
+    aset_status status = aset_scene_init(&b->stage, b->arena, &b->counter.counts);
+    if (status == ASET_OK) {
+        b->stage_sink = aset_scene_sink(&b->stage);
+        status = start_baking(b, 0, AUTO_LONGEST_MAX);
+    }
+    return status;
+}
+
+/* After the first pass. */
+static aset_status end_measuring(aset_baker *b) {
+    if (b->report.objects == 0) {
+        b->phase = PHASE_FAILED;
+        return ASET_ERR_GEOMETRY;
+    }
+    choose_kept(b);
+    if (b->n_kept == 0) {
+        return start_stage(b);
+    }
+    size_t bytes = ASET_KEPT_POINTS_MAX * 3 * sizeof *b->points; /* while fitting, kept polygons are counted only */
+    bytes = bytes > (size_t)b->max_points * 3 * sizeof *b->points ? bytes : (size_t)b->max_points * 3 * sizeof *b->points;
+    b->points = aset_arena_alloc(b->arena, bytes, ASET_CATEGORY_SCRATCH);
+    if (b->points == NULL) {
+        b->phase = PHASE_FAILED;
+        return ASET_ERR_NOMEM;
+    }
+    b->phase = PHASE_FIT;
+    b->n_materials = 0;
+    b->is_other = true;
+    b->stage_sink = aset_counter_sink(&b->counter);
+    return ASET_OK;
+}
+
+static aset_status end_baking(aset_baker *b) {
+    if (b->failure == ASET_ERR_NOMEM) {
+        return bake_again(b, need_at_most(b));
+    }
+    if (b->failure != ASET_OK) {
+        return b->failure;
+    }
+    baker_harvest(b);
+    b->floor_block = b->ceiling_block;
+    b->stage_sink = aset_counter_sink(&b->counter); /* the stage has its entities: further ones go nowhere */
+    if (b->floor_block == baker_blocks(b)) {
+        size_t work = baker_words_bound(b, b->n_counted), bins = need_at_most(b);
+        if (b->counting) {
+            return bake_again(b, work > bins ? work : bins);
+        }
+        if (baker_write(b) != ASET_OK) {
+            return bake_again(b, work);
+        }
+        b->phase = PHASE_DONE;
+        return ASET_OK;
+    }
+    if (!start_pass(b)) {
+        b->counting = true; /* no room for more facets: they are counted, to tell the need */
+        b->n_raw = 0;
+        (void)start_pass(b);
+    }
+    return ASET_OK;
+}
+
+aset_status aset_baker_init(aset_baker *baker, aset_arena *arena, const aset_bake_options *options) {
+    if (baker == NULL || arena == NULL) {
+        return ASET_ERR_ARGUMENT;
+    }
+    memset(baker, 0, sizeof *baker);
+    if (options != NULL) {
+        baker->options = *options;
+        bool is_auto = options->divisions[0] == 0 && options->divisions[1] == 0 && options->divisions[2] == 0;
+        for (int a = 0; a < 3 && !is_auto; a++) {
+            if (options->divisions[a] < 1 || options->divisions[a] > ASET_BAKE_DIVISIONS_MAX) {
+                return ASET_ERR_ARGUMENT;
+            }
+        }
+    }
+    baker->arena = arena;
+    baker->mark = aset_arena_mark(arena);
+    baker->phase = PHASE_MEASURE;
+    baker->stage_sink = aset_counter_sink(&baker->counter);
+    return ASET_OK;
+}
+
+aset_status aset_baker_pass(aset_baker *baker, bool *again) {
+    aset_status status = ASET_ERR_ARGUMENT;
+    if (baker == NULL || again == NULL) {
+        return status;
+    }
+    baker->counter.outline.open = false;
+    switch (baker->phase) {
+    case PHASE_MEASURE: status = end_measuring(baker); break;
+    case PHASE_FIT:
+        aset_arena_release(baker->arena, &baker->mark);
+        baker->points = NULL;
+        status = start_stage(baker);
+        break;
+    case PHASE_BAKE: status = end_baking(baker); break;
+    default: *again = false; return status; /* whatever it had is no longer ours to release */
+    }
+    baker->report.passes++;
+    if (status != ASET_OK) {
+        aset_arena_release(baker->arena, &baker->mark);
+        baker->phase = PHASE_FAILED;
+    }
+    if (baker->phase == PHASE_FAILED || baker->phase == PHASE_DONE) {
+        baker->failure = ASET_ERR_ARGUMENT; /* of every entity that still comes */
+    }
+    *again = status == ASET_OK && baker->phase != PHASE_DONE;
+    return status;
+}
+
+#endif

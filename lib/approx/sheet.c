@@ -1,0 +1,336 @@
+/*
+ * sheet.c - surfaces into samples.
+ *
+ * A polygon is sampled in the columns of the side that it mostly faces: for each row of columns the places where its edges cross
+ * the row's middle are put in order, and the columns whose middle lies between an odd and the next even one are covered. An
+ * edge's crossings are computed from its lower to its upper end whichever polygon it belongs to, and a middle on an edge belongs
+ * to one side of it: so polygons that share an edge share the columns out, none counts twice and none is lost, concave or
+ * not. What is smaller than a column is met in proportion to its area, which is also what it covers in a picture. Spheres
+ * and cones come as polygons of about a column.
+ */
+#include "approx/sheet.h"
+
+#if ASET_WITH_DRAFTS
+
+static inline void to_columns(const aset_baker *b, const aset_real *point, aset_real *column) {
+    for (int a = 0; a < 3; a++) {
+        column[a] = (point[a] - b->origin[a]) * b->scale[a];
+    }
+}
+
+
+/* A polygon's plane over the columns (u, v) of the side that it faces. */
+typedef struct sheet {
+    int a, u, v;
+    const aset_real *normal, *corner; /* its normal, a point of it */
+    aset_real at_u, at_v, at_a, slope_u, slope_v; /* the same point, its slopes */
+    int64_t unit_u, unit_v;                       /* the slopes in units */
+    uint32_t key_side;
+    bin *last; /* of the sample before */
+    uint32_t last_key, last_ceiling;
+    bool seen; /* a middle was met, and what follows from normal and corner is there */
+} sheet;
+
+/* One column's middle. */
+static void add_sample(aset_baker *b, sheet *s, int32_t i, int32_t j) {
+    aset_real du = (aset_real)i + R(0.5) - s->at_u, dv = (aset_real)j + R(0.5) - s->at_v;
+    aset_real height = s->at_a + s->slope_u * du + s->slope_v * dv, top = (aset_real)b->n[s->a] * 4;
+    uint32_t at[3];
+    height = height > 0 ? (height < top ? height : top) : 0;
+    uint32_t k = (uint32_t)height / 4;
+    at[s->u] = (uint32_t)i / 4;
+    at[s->v] = (uint32_t)j / 4;
+    at[s->a] = k < b->n[s->a] ? k : b->n[s->a] - 1;
+    uint32_t key = ((at[2] * b->n[1] + at[1]) * b->n[0] + at[0]) * 6 + s->key_side;
+    if (key != s->last_key || s->last_ceiling != b->ceiling_block) { /* bins move with the ceiling */
+        uint32_t block = baker_block_at(b, at[0], at[1], at[2]);
+        bool is_ours = block >= b->floor_block && block < b->ceiling_block;
+        s->last = is_ours ? bins_find(b, key) : NULL;
+        s->last_key = key;
+        s->last_ceiling = b->ceiling_block;
+    }
+    if (s->last == NULL) {
+        return;
+    }
+    bin *it = s->last;
+    if (it->n == SAMPLES_MAX) {
+        b->failure = ASET_ERR_LIMIT;
+        return;
+    }
+    it->footprint |= 1u << ((i & 3) + 4 * (j & 3));
+    it->n++;
+    it->columns_u += (uint32_t)i & 3u;
+    it->columns_v += (uint32_t)j & 3u;
+    it->height += (int64_t)((height - (aset_real)at[s->a] * 4) * BIN_UNIT);
+    it->slope_u += s->unit_u;
+    it->slope_v += s->unit_v;
+    if (!b->single) {
+        for (int p = 0; p < TEXTURE_PARTS; p++) {
+            it->parts[p] += b->parts[p];
+        }
+    }
+}
+
+static int64_t to_units(aset_real slope) {
+    slope = slope > -1 ? (slope < 1 ? slope : 1) : -1; /* or no number, if the source gives others than it measured */
+    return (int64_t)(slope * BIN_UNIT + (slope < 0 ? R(-0.5) : R(0.5)));
+}
+
+/* The first column whose middle is not below x, or how many there are; x of any size. */
+static inline int32_t first_column(aset_real x, uint32_t n) {
+    aset_real k = real_min(real_max(x - R(0.5), 0), (aset_real)(int32_t)(n * 4)); /* 0 if it is not a number */
+    int32_t below = (int32_t)k;
+    return below + ((aset_real)below < k);
+}
+
+/* u where the edge from p to q crosses the row's middle, computed the same way from both sides of the edge. */
+static inline bool crosses(const aset_real *p, const aset_real *q, int u, int v, aset_real middle, aset_real *at) {
+    if ((p[v] <= middle) == (q[v] <= middle)) {
+        return false;
+    }
+    const aset_real *low = p[v] < q[v] ? p : q, *high = p[v] < q[v] ? q : p;
+    *at = low[u] + (middle - low[v]) / (high[v] - low[v]) * (high[u] - low[u]);
+    return true;
+}
+
+/* The plane, when the first middle is met: most sheets meet none. */
+static void make_plane(sheet *s) {
+    s->slope_u = -s->normal[s->u] / s->normal[s->a];
+    s->slope_v = -s->normal[s->v] / s->normal[s->a];
+    s->unit_u = to_units(s->slope_u);
+    s->unit_v = to_units(s->slope_v);
+    s->at_u = s->corner[s->u];
+    s->at_v = s->corner[s->v];
+    s->at_a = s->corner[s->a];
+    s->seen = true;
+}
+
+static inline void fill_span(aset_baker *b, sheet *s, aset_real from, aset_real to, int32_t row) {
+    int32_t column = first_column(from, b->n[s->u]), end = first_column(to, b->n[s->u]);
+    if (column < end && !s->seen) {
+        make_plane(s);
+    }
+    for (; column < end; column++) {
+        add_sample(b, s, column, row);
+    }
+}
+
+/* Rows of a triangle: two edges cross each. */
+static void fill_triangle_row(aset_baker *b, sheet *s, const aset_real *points, int32_t row) {
+    aset_real middle = (aset_real)row + R(0.5), at[3];
+    uint32_t n = 0;
+    n += crosses(points, points + 3, s->u, s->v, middle, &at[n]);
+    n += crosses(points + 3, points + 6, s->u, s->v, middle, &at[n]);
+    n += crosses(points + 6, points, s->u, s->v, middle, &at[n]);
+    if (n >= 2) {
+        fill_span(b, s, real_min(at[0], at[1]), real_max(at[0], at[1]), row);
+    }
+}
+
+static void fill_row(aset_baker *b, sheet *s, const aset_real *points, uint32_t n, int32_t row, aset_real *crossings) {
+    aset_real middle = (aset_real)row + R(0.5);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        aset_real at;
+        if (!crosses(points + 3 * i, points + 3 * (i + 1 < n ? i + 1 : 0), s->u, s->v, middle, &at)) {
+            continue;
+        }
+        uint32_t k = count++;
+        for (; k > 0 && crossings[k - 1] > at; k--) {
+            crossings[k] = crossings[k - 1];
+        }
+        crossings[k] = at;
+    }
+    for (uint32_t i = 0; i + 1 < count; i += 2) {
+        fill_span(b, s, crossings[i], crossings[i + 1], row);
+    }
+}
+
+/* Newell's normal, from the first point so that nothing large cancels. */
+static void normal_of(const aset_real *points, uint32_t n, aset_real normal[3]) {
+    normal[0] = normal[1] = normal[2] = 0;
+    for (uint32_t i = 1; i + 1 < n; i++) {
+        aset_real e[3], f[3];
+        for (int a = 0; a < 3; a++) {
+            e[a] = points[3 * i + (uint32_t)a] - points[a];
+            f[a] = points[3 * i + 3 + (uint32_t)a] - points[a];
+        }
+        normal[0] += e[1] * f[2] - e[2] * f[1];
+        normal[1] += e[2] * f[0] - e[0] * f[2];
+        normal[2] += e[0] * f[1] - e[1] * f[0];
+    }
+}
+
+/* A polygon whose columns reach from..to on each axis. */
+static void sample_sheet(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings, const int32_t from[3],
+                         const int32_t to[3]) {
+    aset_real normal[3];
+    normal_of(points, n, normal);
+    sheet s;
+    s.a = real_abs(normal[0]) >= real_abs(normal[1]) ? (real_abs(normal[0]) >= real_abs(normal[2]) ? 0 : 2)
+                                                     : (real_abs(normal[1]) >= real_abs(normal[2]) ? 1 : 2);
+    s.u = s.a < 2 ? s.a + 1 : 0;
+    s.v = s.u < 2 ? s.u + 1 : 0;
+    if (normal[s.a] == 0 || from[s.u] == to[s.u] || from[s.v] == to[s.v]) {
+        return;
+    }
+    s.normal = normal;
+    s.corner = points;
+    s.key_side = (uint32_t)s.a * 2 + (normal[s.a] < 0);
+    s.last = NULL;
+    s.last_key = BIN_EMPTY;
+    s.last_ceiling = 0;
+    s.seen = false;
+    for (int32_t row = from[s.v]; row < to[s.v] && b->failure == ASET_OK; row++) {
+        if (n == 3) {
+            fill_triangle_row(b, &s, points, row);
+        } else {
+            fill_row(b, &s, points, n, row, crossings);
+        }
+    }
+    b->report.unseen -= s.seen && b->floor_block == 0;
+}
+
+/*
+ * A polygon in columns. Most of a fine model's triangles hold no column's middle: if their box has none along two axes, no
+ * side sees one, and that is found before anything else is computed.
+ */
+static inline void polygon_in_columns(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings) {
+    int32_t from[3], to[3];
+    int without = 0;
+    for (int a = 0; a < 3; a++) {
+        aset_real low = points[a], high = low;
+        for (uint32_t i = 1; i < n; i++) {
+            low = real_min(low, points[3 * i + (uint32_t)a]);
+            high = real_max(high, points[3 * i + (uint32_t)a]);
+        }
+        from[a] = first_column(low, b->n[a]);
+        to[a] = first_column(high, b->n[a]);
+        without += from[a] == to[a];
+    }
+    if (b->floor_block > 0) { /* a further pass: the first has counted those that are unseen */
+        uint32_t in_layer = b->blocks[0] * b->blocks[1];
+        uint32_t low = (uint32_t)(from[2] > 0 ? from[2] - 1 : 0) / 16, high = (uint32_t)to[2] / 16;
+        if ((high + 1) * in_layer <= b->floor_block || low * in_layer >= b->ceiling_block) {
+            return;
+        }
+    }
+    b->report.unseen += b->floor_block == 0; /* until it is seen */
+    if (without < 2) {
+        sample_sheet(b, points, n, crossings, from, to);
+    }
+}
+
+void sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
+    for (uint32_t i = 0; i < n; i++) {
+        aset_real column[3];
+        to_columns(b, points + 3 * i, column);
+        memcpy(points + 3 * i, column, sizeof column);
+    }
+    polygon_in_columns(b, points, n, crossings);
+}
+
+void sheet_triangle(aset_baker *b, const aset_real *points) {
+    aset_real columns[9];
+    for (int k = 0; k < 3; k++) {
+        to_columns(b, points + 3 * k, columns + 3 * k);
+    }
+    polygon_in_columns(b, columns, 3, NULL);
+}
+
+void sheet_triangles(aset_baker *b, const aset_real *points, size_t n) {
+    for (; n > 0; n--, points += 9) {
+        sheet_triangle(b, points);
+    }
+}
+
+#if ASET_WITH_SPHERES || ASET_WITH_CONES
+static void sample_quad(aset_baker *b, aset_vec3 corners[4]) {
+    aset_real points[2][9];
+    for (int half = 0; half < 2; half++) {
+        for (int i = 0; i < 3; i++) {
+            aset_vec3 c = corners[i == 0 ? 0 : i + half];
+            aset_real point[3] = {c.x, c.y, c.z};
+            to_columns(b, point, points[half] + 3 * i);
+        }
+        polygon_in_columns(b, points[half], 3, NULL);
+    }
+}
+
+#define TURN_MAX 192u
+
+/* How many parts a circle of that radius is taken in: edges of about a column, from 12 to TURN_MAX. */
+static uint32_t parts_of_turn(const aset_baker *b, aset_real radius) {
+    aset_real parts = R(6.2831853) * radius * real_max(b->scale[0], real_max(b->scale[1], b->scale[2]));
+    return parts < 12 ? 12 : parts > R(TURN_MAX) ? TURN_MAX : (uint32_t)parts;
+}
+
+/* A point's turn by 360 / parts degrees: cosine and sine made of tangents, as the core has no others. */
+static void turn_of(uint32_t parts, aset_real *cosine, aset_real *sine) {
+    aset_real t = real_tangent_deg(R(180) / (aset_real)parts);
+    *cosine = (1 - t * t) / (1 + t * t);
+    *sine = 2 * t / (1 + t * t);
+}
+#endif
+
+#if ASET_WITH_SPHERES
+static aset_vec3 on_sphere(aset_vec3 centre, aset_real radius, const aset_real around[2], const aset_real up[2]) {
+    return vec(centre.x + radius * up[1] * around[0], centre.y + radius * up[1] * around[1], centre.z + radius * up[0]);
+}
+
+static void rotate(aset_real at[2], aset_real cosine, aset_real sine) {
+    aset_real x = at[0] * cosine - at[1] * sine;
+    at[1] = at[0] * sine + at[1] * cosine;
+    at[0] = x;
+}
+
+void sheet_sphere(aset_baker *b, aset_vec3 centre, aset_real radius) {
+    uint32_t parts = parts_of_turn(b, real_abs(radius)) / 2 * 2;
+    aset_real cosine, sine, around[2] = {1, 0};
+    turn_of(parts, &cosine, &sine);
+    uint64_t unseen = b->report.unseen;
+    for (uint32_t i = 0; i < parts; i++) {
+        aset_real next[2] = {around[0], around[1]}, up[2] = {1, 0}; /* cosine and sine of the angle from the pole */
+        rotate(next, cosine, sine);
+        for (uint32_t j = 0; j < parts / 2; j++) {
+            aset_real below[2] = {up[0], up[1]};
+            rotate(below, cosine, sine);
+            aset_vec3 corners[4] = {on_sphere(centre, real_abs(radius), around, up),
+                                    on_sphere(centre, real_abs(radius), around, below),
+                                    on_sphere(centre, real_abs(radius), next, below),
+                                    on_sphere(centre, real_abs(radius), next, up)};
+            sample_quad(b, corners);
+            up[0] = below[0];
+            up[1] = below[1];
+        }
+        around[0] = next[0];
+        around[1] = next[1];
+    }
+    b->report.unseen = unseen;
+}
+#endif
+
+#if ASET_WITH_CONES
+void sheet_cone(aset_baker *b, aset_vec3 base, aset_real base_radius, aset_vec3 apex, aset_real apex_radius) {
+    aset_vec3 axis = vec_unit(vec_sub(apex, base));
+    aset_vec3 other = real_abs(axis.x) < R(0.6) ? vec(1, 0, 0) : vec(0, 1, 0);
+    aset_vec3 x = vec_unit(vec_cross(other, axis)), y = vec_cross(axis, x);
+    aset_real r0 = real_abs(base_radius), r1 = real_abs(apex_radius), cosine, sine;
+    uint32_t parts = parts_of_turn(b, real_max(r0, r1));
+    turn_of(parts, &cosine, &sine);
+    aset_vec3 out = x;
+    uint64_t unseen = b->report.unseen;
+    for (uint32_t i = 0; i < parts; i++) {
+        aset_real along_x = vec_dot(out, x) * cosine - vec_dot(out, y) * sine;
+        aset_real along_y = vec_dot(out, x) * sine + vec_dot(out, y) * cosine;
+        aset_vec3 next = vec_add(vec_scale(x, along_x), vec_scale(y, along_y));
+        aset_vec3 corners[4] = {vec_along(base, r0, out), vec_along(base, r0, next), vec_along(apex, r1, next),
+                                vec_along(apex, r1, out)};
+        sample_quad(b, corners);
+        out = next;
+    }
+    b->report.unseen = unseen;
+}
+#endif
+
+#endif
