@@ -105,7 +105,7 @@ void trade_free(trade *t);
 
 /* Whether it is a draft and nothing else: no scene and no space, the source goes straight into the baker. */
 bool trade_is_streamed(const trade_setting *s);
-/* Finds a draft's need by baking it. need holds what is needed before the bake and is a draft's afterwards. */
+/* Finds a draft's need by baking it. need holds what is needed without the draft before, and all of it afterwards. */
 bool trade_find_need(trade_setting *s);
 
 /* Draws a setting once into pixels (R, G, B, no gaps); times in microseconds, figures without the error. */

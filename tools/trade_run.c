@@ -7,8 +7,8 @@
  * streamed draft has no scene in its arena, and none counted. The block is the same for all settings and was written to
  * before, so that no setting pays for fresh pages.
  *
- * A draft's need is what its bake took where it could have had more, and the baker, which goes by the room that it has,
- * takes the same steps in an arena of exactly that. It would do with less, in more passes over the source.
+ * A draft's need is found by trying: the baker goes by the room that it has, and takes more passes over the source where
+ * that is less. It takes the same steps each time in an arena of the same size, so what was enough once is enough always.
  */
 #include "metrics.h"
 #include "trade.h"
@@ -108,6 +108,9 @@ static aset_status render(const trade_setting *s, drawing *d, uint8_t *pixels, a
     return aset_render_rows(&tracer, &view, &picture, 0, group->height, &d->scratch, statistics);
 }
 
+/* A draft's need is the least that will do, but for this share of it: each halving of that costs one more bake. */
+#define NEED_SHARE 32u
+
 /* False if it is another error than too little memory, of which *size is then enough for one more try. */
 static bool try_need(trade_setting *s, size_t *size, bool *found) {
     drawing d;
@@ -129,10 +132,16 @@ bool trade_find_need(trade_setting *s) {
     size_t size =
         s->need + 4 * ASET_BYTES_BAKE(s->grid[0], s->grid[1], s->grid[2]) + 65536u; /* two doublings, and a stage */
     bool found = false, fine = true;
+    size_t low = s->need;
     while (fine && !found) {
         fine = try_need(s, &size, &found);
     }
-    return found;
+    while (fine && s->need > low + s->need / NEED_SHARE) {
+        size_t middle = low + (s->need - low) / 2, more = middle;
+        fine = try_need(s, &more, &found);
+        low = found ? low : middle;
+    }
+    return fine;
 }
 
 bool trade_draw(const trade *t, const trade_setting *s, uint8_t *pixels, trade_figures *figures, uint64_t *build_us,
