@@ -1,60 +1,16 @@
 /*
- * model_tests.h - what the tests of the readers of models share: inputs given in pieces, a sink that writes down, a spill
- * file and libraries in memory, and the sweeps that every format must survive: cut off at every byte, failing at every
- * byte, every byte replaced.
+ * model_tests.h - what the tests of the readers of models share: a sink that writes down, a spill file and libraries in
+ * memory, and the sweeps that every format must survive: cut off at every byte, failing at every byte, every byte replaced.
  */
 #ifndef ASET_TESTS_MODEL_TESTS_H
 #define ASET_TESTS_MODEL_TESTS_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "support/support.h"
 
 #include "aset/load.h"
 
-#define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
-
+typedef byte_source source;
 typedef aset_status (*loader)(const aset_sink *, aset_read, void *, const aset_load_options *, aset_load_report *);
-
-/* ---- an input ---- */
-
-typedef struct source {
-    const char *bytes;
-    size_t size, at, chunk;
-    size_t fail_at; /* the callback fails instead of giving the byte of this number */
-    bool ended;
-} source;
-
-static inline ptrdiff_t give(void *context, void *buffer, size_t size) {
-    source *from = context;
-    assert_true(size > 0);
-    assert_false(from->ended); /* nobody asks again after the end */
-    if (from->at >= from->fail_at) {
-        return -1;
-    }
-    size_t n = from->size - from->at;
-    n = n < size ? n : size;
-    n = n < from->chunk ? n : from->chunk;
-    n = n < from->fail_at - from->at ? n : from->fail_at - from->at;
-    memcpy(buffer, from->bytes + from->at, n);
-    from->at += n;
-    from->ended = n == 0;
-    return (ptrdiff_t)n;
-}
-
-static const size_t chunks[] = {1, 2, 7, SIZE_MAX};
-
-static inline source source_of(const char *bytes, size_t size, size_t chunk) {
-    const source from = {bytes, size, 0, chunk, SIZE_MAX, false};
-    return from;
-}
 
 /* ---- a sink that writes down ---- */
 
@@ -68,17 +24,9 @@ typedef struct recorder {
 } recorder;
 
 static inline void put(recorder *to, const char *text) {
-    const size_t n = strlen(text);
-    if (to->quiet) {
-        return;
+    if (!to->quiet) {
+        to->text = text_append(to->text, &to->length, &to->capacity, text);
     }
-    while (to->length + n + 1 > to->capacity) {
-        to->capacity = to->capacity * 2 + 256;
-        to->text = realloc(to->text, to->capacity);
-        assert_non_null(to->text);
-    }
-    memcpy(to->text + to->length, text, n + 1);
-    to->length += n;
 }
 
 static inline void put_number(recorder *to, aset_real x) {
@@ -297,13 +245,6 @@ static inline void expect_text(loader load, const char *text, const char *log) {
     expect_log(load, text, strlen(text), true, NULL, log, 0);
 }
 
-typedef struct bad_case {
-    const char *text; /* '@' stands before the byte that the report has to name, and is not part of the input */
-    uint32_t line;
-    aset_status status;
-    const char *token, *what; /* what: a part of the sentence */
-} bad_case;
-
 static inline void expect_bad_bytes(loader load, const char *bytes, size_t size, bool size_known, size_t offset,
                                     const bad_case *bad) {
     for (size_t i = 0; i < COUNT_OF(chunks); i++) {
@@ -333,13 +274,9 @@ static inline void expect_bad_bytes(loader load, const char *bytes, size_t size,
 
 static inline void expect_all_bad(loader load, bool size_known, const bad_case *bad, size_t n) {
     for (size_t i = 0; i < n; i++) {
-        const size_t size = strlen(bad[i].text), offset = strcspn(bad[i].text, "@");
-        assert_true(offset < size);
-        char *text = malloc(size);
-        assert_non_null(text);
-        memcpy(text, bad[i].text, offset);
-        memcpy(text + offset, bad[i].text + offset + 1, size - offset - 1);
-        expect_bad_bytes(load, text, size - 1, size_known, offset, &bad[i]);
+        size_t size, offset;
+        char *text = bad_input(bad + i, &size, &offset);
+        expect_bad_bytes(load, text, size, size_known, offset, bad + i);
         free(text);
     }
 }

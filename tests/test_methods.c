@@ -5,14 +5,13 @@
  *
  * ASET_LONG=1 in the environment: a million rays for each method instead of thirty thousand.
  */
-#include "support/support.h"
+#include "support/rays.h"
 
 #include "approx/summary.h"
 #include "base/bits.h"
 #include "space/cells.h"
 #include "space/slices.h"
 #include "space/tree.h"
-#include "space/walk.h"
 
 #define ROOM ((size_t)24 << 20)
 #define RAYS 30000u
@@ -55,41 +54,6 @@ static bool has_sides(const aset_method *method) {
 }
 
 /* --- small helpers --- */
-
-static aset_vec3 real3(double x, double y, double z) {
-    return dvec_real(dvec_make(x, y, z));
-}
-
-static void set_axis(aset_vec3 *v, int a, aset_real x) {
-    *(a == 0 ? &v->x : a == 1 ? &v->y : &v->z) = x;
-}
-
-static aset_real axis_of(aset_vec3 v, int a) {
-    return a == 0 ? v.x : a == 1 ? v.y : v.z;
-}
-
-static void bounds_of(const aset_scene *scene, dvec *low, dvec *high) {
-    aset_vec3 l = {0, 0, 0}, h = {1, 1, 1};
-    aset_scene_bounds(scene, &l, &h);
-    *low = dvec_of(l);
-    *high = dvec_of(h);
-}
-
-static double size_of(const aset_scene *scene) {
-    dvec low, high;
-    bounds_of(scene, &low, &high);
-    double size = fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
-    return size > 0 ? size : 1;
-}
-
-/* A point in the scene's box, grown by so many sizes. */
-static dvec random_in_scene(random_state *r, const aset_scene *scene, double grown) {
-    dvec low, high;
-    double g = grown * size_of(scene);
-    bounds_of(scene, &low, &high);
-    double x = random_between(r, low.x - g, high.x + g), y = random_between(r, low.y - g, high.y + g);
-    return dvec_make(x, y, random_between(r, low.z - g, high.z + g));
-}
 
 static uint32_t rays_each(size_t parts) {
     const char *text = getenv("ASET_LONG");
@@ -140,92 +104,20 @@ static void scene_model(model *m, random_state *r, int sort) {
 
 /* --- rays of all sorts --- */
 
-typedef enum ray_sort {
-    FROM_OUTSIDE,
-    FROM_INSIDE,
-    ALONG_AXIS,
-    NEARLY_ALONG_AXIS,
-    IN_SLICE,
-    FROM_SLICE,
-    THROUGH_CORNERS,
-    ALONG_BOX,
-    FROM_WITHIN_OBJECT,
-    FROM_SURFACE,
-    FROM_FAR,
-    RAY_SORTS
-} ray_sort;
-
-static const char *const sort_names[RAY_SORTS] = {
-    "from outside",    "from inside", "along an axis",           "nearly along an axis", "in a slice", "from a slice",
-    "through corners", "along a box", "from inside of an object", "from a surface",       "from far"};
-
-/* Any slice, more often the one in the middle or another that an octree halves at early. */
-static aset_real random_slice(random_state *r, const aset_space *space, int a) {
-    uint32_t n = space->slices.n[a], k = random_below(r, n + 1);
-    if (random_chance(r, 0.4)) {
-        k = n * (1 + random_below(r, 3)) / 4;
-    }
-    return slices_plane(&space->slices, a, (int32_t)k);
-}
-
-static void aim_at(aset_ray *ray, dvec target) {
-    dvec to = dvec_sub(target, dvec_of(ray->origin));
-    ray->direction = dvec_length(to) > 0 ? dvec_real(dvec_unit(to)) : real3(0, 0, 1);
-}
-
-/* Zeros of either sign. */
-static aset_real some_zero(random_state *r) {
-    return random_chance(r, 0.5) ? R(0.0) : -R(0.0);
-}
-
-static void turn_along_axis(aset_ray *ray, random_state *r) {
-    int axis = (int)random_below(r, 3);
-    for (int a = 0; a < 3; a++) {
-        set_axis(&ray->direction, a, a == axis ? (random_chance(r, 0.5) ? R(1) : R(-1)) : some_zero(r));
-    }
-}
-
-/* Components down to the smallest that there are. */
-static void turn_nearly_along_axis(aset_ray *ray, random_state *r) {
-    int axis = (int)random_below(r, 3);
-    for (int a = 0; a < 3; a++) {
-        double x = pow(10, random_between(r, -44, -3)) * (random_chance(r, 0.5) ? 1 : -1);
-        set_axis(&ray->direction, a, a == axis ? (random_chance(r, 0.5) ? R(1) : R(-1)) : (aset_real)x);
-    }
-}
-
-/* The origin on one, two or three slices; stays: the ray stays in one of them. */
-static void put_on_slices(aset_ray *ray, random_state *r, const aset_space *space, bool stays) {
-    int axis = (int)random_below(r, 3);
-    ray->origin = dvec_real(random_in_scene(r, space->scene, stays ? 0.3 : 0));
-    for (int a = 0; a < 3; a++) {
-        if (a == axis || random_chance(r, 0.3)) {
-            set_axis(&ray->origin, a, random_slice(r, space, a));
-        }
-    }
-    ray->direction = random_direction(r);
-    if (random_chance(r, 0.3)) {
-        turn_along_axis(ray, r);
-    }
-    if (stays) {
-        set_axis(&ray->direction, axis, some_zero(r));
-        if (ray->direction.x == 0 && ray->direction.y == 0 && ray->direction.z == 0) {
-            set_axis(&ray->direction, (axis + 1) % 3, random_chance(r, 0.5) ? R(1) : R(-1));
-        }
-    }
-}
+static const ray_sort sorts[] = {FROM_OUTSIDE, FROM_INSIDE, ALONG_AXIS, NEARLY_ALONG_AXIS, IN_SLICE, FROM_SLICE,
+                                 THROUGH_CORNERS, ALONG_BOX, FROM_WITHIN_OBJECT, FROM_SURFACE, FROM_FAR};
 
 /* From one corner of voxels to another, or along voxels' diagonals. */
 static void put_through_corners(aset_ray *ray, random_state *r, const aset_space *space) {
     dvec other = {0, 0, 0};
     bool diagonal = random_chance(r, 0.5);
     for (int a = 0; a < 3; a++) {
-        set_axis(&ray->origin, a, random_slice(r, space, a));
+        set_axis(&ray->origin, a, random_slice(r, space, a, true));
         set_axis(&ray->direction, a, space->slices.width[a] * (random_chance(r, 0.5) ? R(1) : R(-1)));
     }
-    other.x = (double)random_slice(r, space, 0);
-    other.y = (double)random_slice(r, space, 1);
-    other.z = (double)random_slice(r, space, 2);
+    other.x = (double)random_slice(r, space, 0, true);
+    other.y = (double)random_slice(r, space, 1, true);
+    other.z = (double)random_slice(r, space, 2, true);
     if (!diagonal) {
         aim_at(ray, other);
     }
@@ -235,34 +127,20 @@ static void put_through_corners(aset_ray *ray, random_state *r, const aset_space
     }
 }
 
-/* Along a face or an edge of an object's own box; or from its middle. */
-static void put_at_object(aset_ray *ray, random_state *r, const aset_scene *scene, bool middle) {
+static void put_within_object(aset_ray *ray, random_state *r, const aset_scene *scene) {
     aset_vec3 low, high;
     aset_object_bounds(scene, random_below(r, scene->counts.objects), &low, &high);
-    if (middle) {
-        dvec l = dvec_of(low), h = dvec_of(high);
-        double s = random_between(r, 0.4, 0.6);
-        ray->origin = real3(l.x + s * (h.x - l.x), l.y + s * (h.y - l.y), l.z + s * (h.z - l.z));
-        ray->direction = random_direction(r);
-        return;
-    }
-    ray->origin = dvec_real(random_in_scene(r, scene, 0.2));
-    turn_along_axis(ray, r);
-    for (int a = 0; a < 3; a++) {
-        aset_real side = axis_of(random_chance(r, 0.5) ? low : high, a);
-        if (random_chance(r, 0.7)) {
-            set_axis(&ray->origin, a, side);
-        }
-    }
+    dvec l = dvec_of(low), h = dvec_of(high);
+    double s = random_between(r, 0.4, 0.6);
+    ray->origin = real3(l.x + s * (h.x - l.x), l.y + s * (h.y - l.y), l.z + s * (h.z - l.z));
+    ray->direction = random_direction(r);
 }
 
 static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *scene) {
     ray->origin = dvec_real(random_in_scene(r, scene, 1));
     for (int trial = 0; trial < 10; trial++) {
         aim_at(ray, random_in_scene(r, scene, 0));
-        aset_real t = object_hit(scene, random_below(r, scene->counts.objects), ray->origin, ray->direction);
-        if (t < REAL_INFINITY) {
-            ray->origin = dvec_real(dvec_along(dvec_of(ray->origin), (double)t, dvec_of(ray->direction)));
+        if (move_to_hit(ray, scene, random_below(r, scene->counts.objects))) {
             break;
         }
     }
@@ -271,22 +149,13 @@ static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *sce
 
 static aset_ray random_ray(random_state *r, const aset_space *space, ray_sort sort) {
     const aset_scene *scene = space->scene;
-    aset_ray ray;
-    ray.t_max = random_chance(r, 0.2) ? (aset_real)random_between(r, 0, 3 * size_of(scene)) : REAL_INFINITY;
-    ray.origin = dvec_real(random_in_scene(r, scene, sort == FROM_OUTSIDE ? 1.5 : sort == ALONG_AXIS ? 0.4 : 0));
-    aim_at(&ray, random_in_scene(r, scene, 0));
-    if (scene->counts.objects == 0 && (sort == ALONG_BOX || sort == FROM_WITHIN_OBJECT || sort == FROM_SURFACE)) {
+    aset_ray ray = random_ray_common(r, space, sort, true);
+    if (scene->counts.objects == 0 && (sort == FROM_WITHIN_OBJECT || sort == FROM_SURFACE)) {
         return ray;
     }
     switch (sort) {
-    case FROM_INSIDE: ray.direction = random_direction(r); break;
-    case ALONG_AXIS: turn_along_axis(&ray, r); break;
-    case NEARLY_ALONG_AXIS: turn_nearly_along_axis(&ray, r); break;
-    case IN_SLICE: put_on_slices(&ray, r, space, true); break;
-    case FROM_SLICE: put_on_slices(&ray, r, space, false); break;
     case THROUGH_CORNERS: put_through_corners(&ray, r, space); break;
-    case ALONG_BOX: put_at_object(&ray, r, scene, false); break;
-    case FROM_WITHIN_OBJECT: put_at_object(&ray, r, scene, true); break;
+    case FROM_WITHIN_OBJECT: put_within_object(&ray, r, scene); break;
     case FROM_SURFACE: put_on_surface(&ray, r, scene); break;
     case FROM_FAR: {
         double distance = size_of(scene) * pow(10, random_between(r, 0.5, 7));
@@ -429,14 +298,10 @@ static void layout_open(layout *l, const aset_space *space) {
     for (uint32_t i = 0; i < space->scene->counts.objects; i++) {
         l->objects[i] = object_voxels(space, i);
     }
-    int32_t v[3];
-    for (v[2] = 0; v[2] < (int32_t)n[2]; v[2]++) {
-        for (v[1] = 0; v[1] < (int32_t)n[1]; v[1]++) {
-            for (v[0] = 0; v[0] < (int32_t)n[0]; v[0]++) {
-                layout_voxel(l, v);
-            }
-        }
-    }
+    int32_t v[3] = {0, 0, 0};
+    do {
+        layout_voxel(l, v);
+    } while (voxel_next(v, n));
     assert_int_equal(l->n_cells, space->cells.n_cells);
     assert_true(!l->by_leaf || space->cells.n_cells == 0 || l->n_leaves == space->structure.leaves);
 }
@@ -510,93 +375,64 @@ static void course_take(course *c, const layout *l, const probe *ray, uint8_t *t
 
 /* --- one ray through both --- */
 
-typedef struct duel {
-    const stage *stage;
-    aset_tracer brute, other;
+typedef struct match {
+    duel duel;
     layout layout;
     course course;
-    uint8_t *seen, *touched; /* by the walk, by the plain way, for each object */
-    const char *name;
-    uint64_t seed, rays, hits, cells;
-    uint32_t depth, leaf;
-} duel;
-
-#define DUEL_TEXT                                                                                                      \
-    "%s %s, " SEED ", ray %" PRIu64 " %s, %" PRIu32 "x%" PRIu32 "x%" PRIu32 ", depth %" PRIu32 ", leaf %" PRIu32
-#define DUEL_ARGS(d, sort)                                                                                             \
-    aset_method_name((d)->other.space->method), (d)->name, (d)->seed, (d)->rays, sort_names[sort],                     \
-        (d)->other.space->slices.n[0], (d)->other.space->slices.n[1], (d)->other.space->slices.n[2], (d)->depth, (d)->leaf
-
-static bool same_hit(const aset_hit *a, const aset_hit *b) {
-    return memcmp(&a->t, &b->t, sizeof a->t) == 0 && memcmp(&a->point, &b->point, sizeof a->point) == 0 &&
-           memcmp(&a->normal, &b->normal, sizeof a->normal) == 0 &&
-           memcmp(&a->geometric, &b->geometric, sizeof a->geometric) == 0 && a->object == b->object &&
-           a->material == b->material;
-}
+    uint8_t *touched; /* by the plain way, for each object */
+    uint64_t cells;
+} match;
 
 /* Closest and any hit, as brute force has them; the answer of one is the brute force's own loop over the objects. */
 static void compare_queries(duel *d, const aset_ray *ray, ray_sort sort) {
     aset_statistics other;
-    aset_hit expected, hit;
-    bool expected_found, found, any;
-    uint32_t n_objects = d->stage->scene.counts.objects;
+    bool any;
     memset(&other, 0, sizeof other);
-    assert_int_equal(aset_closest_hit(&expected_found, &expected, &d->brute, ray, false, NULL), ASET_OK);
-    assert_int_equal(aset_closest_hit(&found, &hit, &d->other, ray, false, &other), ASET_OK);
-    check(found == expected_found, DUEL_TEXT, DUEL_ARGS(d, sort));
-    check(!found || same_hit(&hit, &expected), DUEL_TEXT ": object %" PRIu32 " at %.9g, not %" PRIu32 " at %.9g",
-          DUEL_ARGS(d, sort), hit.object, (double)hit.t, expected.object, (double)expected.t);
-    check(other.tests <= n_objects && other.test_hits <= other.tests, DUEL_TEXT, DUEL_ARGS(d, sort));
+    bool found = duel_closest(d, ray, sort, NULL, &other);
     check(other.nonempty_visited <= other.cells_visited, DUEL_TEXT, DUEL_ARGS(d, sort));
     assert_int_equal(aset_any_hit(&any, &d->other, ray, false, NULL), ASET_OK);
-    check(any == expected_found, DUEL_TEXT ": any", DUEL_ARGS(d, sort));
-    d->hits += found;
-    if (found && d->rays % 8 == 0) { /* t_max itself is no hit any more */
-        aset_ray shorter = *ray;
-        shorter.t_max = hit.t;
-        aset_closest_hit(&expected_found, &expected, &d->brute, &shorter, false, NULL);
-        aset_closest_hit(&found, &hit, &d->other, &shorter, false, NULL);
-        check(found == expected_found && (!found || same_hit(&hit, &expected)), DUEL_TEXT ": t_max", DUEL_ARGS(d, sort));
-    }
+    check(any == found, DUEL_TEXT ": any", DUEL_ARGS(d, sort));
 }
 
 /* --- what a walk goes through --- */
 
-typedef struct inspection {
-    walk_request walk; /* first, so that the visitor finds the rest */
-    duel *duel;
-    const aset_ray *ray;
-    aset_real last_t;
+typedef struct close_inspection {
+    inspection common; /* first, so that the visitor finds the rest */
+    const match *match;
     met first; /* the first cell entered at t > 0 */
-    bool any_first, twice, late, backwards, out_of_range, misplaced, visited_empty;
-} inspection;
+    bool any_first, out_of_range, misplaced, visited_empty;
+} close_inspection;
 
 /* Is the slice by which the walk says that it came in the cell's own, and t that slice's? */
-static bool well_placed(const duel *d, const aset_ray *ray, const walk_cell *cell) {
-    const aset_slices *slices = &d->other.space->slices;
-    const voxel_box *region = d->layout.region + cell->index;
+static bool well_placed(const match *m, const aset_ray *ray, const walk_cell *cell) {
+    const aset_slices *slices = &m->duel.other.space->slices;
+    const voxel_box *region = m->layout.region + cell->index;
     probe p = probe_make(ray->origin, ray->direction);
     int a = cell->face / 2;
     bool down = (cell->face & 1) != 0;
     aset_real plane = slices_plane(slices, a, down ? region->high[a] + 1 : region->low[a]);
     double at = (double)p.origin[a] + (double)cell->t * (double)p.direction[a];
-    double near = 1e-5 * (size_of(&d->stage->scene) + fabs((double)p.origin[a]) + fabs((double)plane));
-    bool side = d->layout.faces == 1 || d->layout.face_of[cell->index] == (uint32_t)cell->face;
+    double near = 1e-5 * (size_of(&m->duel.stage->scene) + fabs((double)p.origin[a]) + fabs((double)plane));
+    bool side = m->layout.faces == 1 || m->layout.face_of[cell->index] == (uint32_t)cell->face;
     return side && p.moves[a] && down == (p.direction[a] < 0) && cell->t == (plane - p.origin[a]) * p.inverse[a] &&
            fabs(at - (double)plane) <= near;
 }
 
-static aset_real inspect(walk_request *walk, const walk_cell *cell) {
-    inspection *in = (inspection *)walk;
-    const duel *d = in->duel;
+static aset_real inspect_closely(walk_request *walk, const walk_cell *cell) {
+    close_inspection *in = (close_inspection *)walk;
+    const duel *d = &in->match->duel;
     uint32_t n_cells = d->other.space->cells.n_cells;
     in->out_of_range = in->out_of_range || (cell->index >= n_cells && (cell->index != NO_CELL || cell->face != FACE_NONE)) ||
                        cell->face < FACE_NONE || cell->face > 5 || cell->n > WALK_BATCH;
     in->visited_empty = in->visited_empty || cell->n == 0;
-    if (cell->face != FACE_NONE && !in->out_of_range) {
-        in->backwards = in->backwards || cell->t < in->last_t;
-        in->last_t = cell->t;
-        in->misplaced = in->misplaced || !well_placed(d, in->ray, cell);
+    for (uint32_t i = 0; i < cell->n && !in->out_of_range; i++) {
+        in->out_of_range = cell->objects[i] >= d->stage->scene.counts.objects;
+    }
+    if (in->out_of_range) {
+        return REAL_INFINITY; /* nothing to look up by such numbers */
+    }
+    if (cell->face != FACE_NONE) {
+        in->misplaced = in->misplaced || !well_placed(in->match, in->common.ray, cell);
         if (cell->t > 0 && !in->any_first) {
             in->any_first = true;
             in->first.cell = cell->index;
@@ -604,54 +440,31 @@ static aset_real inspect(walk_request *walk, const walk_cell *cell) {
             in->first.t = cell->t;
         }
     }
-    for (uint32_t i = 0; i < cell->n; i++) {
-        uint32_t object = cell->objects[i];
-        if (object >= d->stage->scene.counts.objects) {
-            in->out_of_range = true;
-            continue;
-        }
-        in->twice = in->twice || d->seen[object] > 0;
-        d->seen[object] = 1;
-        if (cell->face != FACE_NONE) {
-            in->late = in->late || cell->t > object_hit(&d->stage->scene, object, in->ray->origin, in->ray->direction);
-        }
-    }
-    return REAL_INFINITY;
+    return inspect(walk, cell);
 }
 
 /*
- * The exact walk, all the way: no object twice, cells in order, every object that the ray hits by itself among those met,
- * and none met in a cell that begins behind its hit (else a walk that stops at a nearer hit could lose it). The plain way
- * tells which boxes the ray leads through: where an object is met exactly then, it is met nowhere else either.
+ * The exact walk, and the plain way, which tells which boxes the ray leads through: where an object is met exactly then, it
+ * is met nowhere else either.
  */
-static void inspect_exact(duel *d, const aset_ray *ray, ray_sort sort) {
-    const aset_scene *scene = &d->stage->scene;
+static void inspect_exact(match *m, const aset_ray *ray, ray_sort sort) {
+    duel *d = &m->duel;
     const aset_space *space = d->other.space;
-    const course *c = &d->course;
-    inspection in;
+    const course *c = &m->course;
+    close_inspection in;
     memset(&in, 0, sizeof in);
-    memset(d->seen, 0, scene->counts.objects);
-    in.walk.visit = inspect;
-    in.walk.limit = REAL_INFINITY;
-    in.walk.wants_references = true;
-    in.duel = d;
-    in.ray = ray;
-    in.last_t = -REAL_INFINITY;
-    probe p = probe_make(ray->origin, ray->direction);
-    space->method->go(space, &p, &in.walk);
-    check(!in.twice, DUEL_TEXT ": an object twice", DUEL_ARGS(d, sort));
-    check(!in.backwards, DUEL_TEXT ": cells out of order", DUEL_ARGS(d, sort));
-    check(!in.late, DUEL_TEXT ": met behind its hit", DUEL_ARGS(d, sort));
+    in.common.walk.visit = inspect_closely;
+    in.match = m;
+    inspect_walk(&in.common, d, ray, sort);
     check(!in.out_of_range, DUEL_TEXT ": a number out of range", DUEL_ARGS(d, sort));
     check(!in.misplaced, DUEL_TEXT ": t is not the face's", DUEL_ARGS(d, sort));
     check(!in.visited_empty, DUEL_TEXT ": a visit without objects", DUEL_ARGS(d, sort));
+    inspect_seen(d, ray, sort);
     bool only_these = space->method != &aset_brute && !(has_sides(space->method) && c->inside);
-    for (uint32_t i = 0; i < scene->counts.objects; i++) {
-        check(d->seen[i] > 0 || !(object_hit(scene, i, ray->origin, ray->direction) < REAL_INFINITY),
-              DUEL_TEXT ": object %" PRIu32 " missed", DUEL_ARGS(d, sort), i);
-        check(space->method == &aset_brute || d->seen[i] > 0 || d->touched[i] < LONGER,
+    for (uint32_t i = 0; i < d->stage->scene.counts.objects; i++) {
+        check(space->method == &aset_brute || d->seen[i] > 0 || m->touched[i] < LONGER,
               DUEL_TEXT ": object %" PRIu32 " passed over", DUEL_ARGS(d, sort), i);
-        check(!only_these || (d->seen[i] > 0) == (d->touched[i] > NOWHERE), DUEL_TEXT ": object %" PRIu32 " met for nothing",
+        check(!only_these || (d->seen[i] > 0) == (m->touched[i] > NOWHERE), DUEL_TEXT ": object %" PRIu32 " met for nothing",
               DUEL_ARGS(d, sort), i);
     }
     if (!c->inside && space->method != &aset_brute) { /* trees: an object may be met behind the first leaf that names it */
@@ -679,9 +492,10 @@ static aset_real list_met(walk_request *walk, const walk_cell *cell) {
 }
 
 /* The approximate walk: exactly the cells of the plain way at t > 0, in its order; and it stops when it is told to. */
-static void inspect_approximate(duel *d, const aset_ray *ray, ray_sort sort) {
+static void inspect_approximate(match *m, const aset_ray *ray, ray_sort sort) {
+    const duel *d = &m->duel;
     const aset_space *space = d->other.space;
-    const course *c = &d->course;
+    const course *c = &m->course;
     listing_walk l;
     probe p = probe_make(ray->origin, ray->direction);
     for (uint32_t stop_after = 0; stop_after <= 1; stop_after++) {
@@ -700,52 +514,36 @@ static void inspect_approximate(duel *d, const aset_ray *ray, ray_sort sort) {
                   DUEL_TEXT ": cell %" PRIu32 " at %.9g, not %" PRIu32 " at %.9g", DUEL_ARGS(d, sort), l.list[i].cell,
                   (double)l.list[i].t, c->list[i].cell, (double)c->list[i].t);
         }
-        uint64_t through = d->layout.by_leaf ? c->leaves : c->voxels;
+        uint64_t through = m->layout.by_leaf ? c->leaves : c->voxels;
         through -= has_sides(space->method) && c->inside && through > 0; /* sides begin with the first crossing */
         check(stop_after > 0 || space->cells.n_cells == 0 || space->method == &aset_brute || l.walk.cells == through,
               DUEL_TEXT ": %" PRIu64 " cells counted, not %" PRIu64, DUEL_ARGS(d, sort), l.walk.cells, through);
     }
-    d->cells += l.n;
+    m->cells += l.n;
 }
 
-/* As queries do: margins answer for rounding from no farther than about the scene's size. */
-static void bring_near(aset_ray *ray, const aset_scene *scene) {
-    aset_vec3 low, high;
-    aset_real t_in, t_out;
-    probe p = probe_make(ray->origin, ray->direction);
-    if (aset_scene_bounds(scene, &low, &high) && probe_box(&p, low, high, &t_in, &t_out)) {
-        double moved = (double)t_in - size_of(scene) / 16;
-        if (moved > 0) {
-            ray->origin = dvec_real(dvec_along(dvec_of(ray->origin), moved, dvec_of(ray->direction)));
-        }
-    }
-}
-
-static void run_duel(duel *d, const stage *s, const aset_space *brute, const aset_space *space, uint32_t n_rays) {
+static void run_match(match *m, const stage *s, const aset_space *brute, const aset_space *space, uint32_t n_rays) {
+    duel *d = &m->duel;
     random_state r = random_start(d->seed);
-    d->stage = s;
-    d->brute = stage_tracer(s, brute);
-    d->other = stage_tracer(s, space);
-    d->seen = malloc(s->scene.counts.objects + 1);
-    d->touched = malloc(s->scene.counts.objects + 1);
-    layout_open(&d->layout, space);
+    duel_open(d, s, brute, space);
+    m->touched = malloc(s->scene.counts.objects + 1);
+    layout_open(&m->layout, space);
     for (uint32_t i = 0; i < n_rays; i++, d->rays++) {
-        ray_sort sort = (ray_sort)(i % RAY_SORTS);
+        ray_sort sort = sorts[i % COUNT_OF(sorts)];
         aset_ray ray = random_ray(&r, space, sort);
         compare_queries(d, &ray, sort);
         if (i % 3 == 0) {
-            ray.direction = dvec_real(dvec_unit(dvec_of(ray.direction)));
-            bring_near(&ray, &s->scene);
+            ray = brought_near(&s->scene, &ray);
             probe p = probe_make(ray.origin, ray.direction);
-            memset(d->touched, 0, s->scene.counts.objects);
-            course_take(&d->course, &d->layout, &p, d->touched);
-            inspect_exact(d, &ray, sort);
-            inspect_approximate(d, &ray, sort);
+            memset(m->touched, 0, s->scene.counts.objects);
+            course_take(&m->course, &m->layout, &p, m->touched);
+            inspect_exact(m, &ray, sort);
+            inspect_approximate(m, &ray, sort);
         }
     }
-    layout_close(&d->layout);
-    free(d->seen);
-    free(d->touched);
+    layout_close(&m->layout);
+    duel_close(d);
+    free(m->touched);
 }
 
 /* --- equal to brute force --- */
@@ -760,20 +558,20 @@ static void duel_family(const family *f) {
         scene_model(&m, &r, sort);
         stage_open_model(&s, &m, ROOM);
         for (size_t o = 0; o < f->n_options; o++) {
-            static duel d; /* its course is large */
+            static match d; /* its course is large */
             aset_space brute, space;
             aset_mark mark = aset_arena_mark(&s.arena);
             memset(&d, 0, sizeof d);
-            d.name = scene_names[sort];
-            d.seed = seed_of(1000 + 100 * (uint64_t)sort + o);
-            d.depth = f->options[o].depth;
-            d.leaf = f->options[o].leaf;
+            d.duel.name = scene_names[sort];
+            d.duel.seed = seed_of(1000 + 100 * (uint64_t)sort + o);
+            d.duel.depth = f->options[o].depth;
+            d.duel.leaf = f->options[o].leaf;
             stage_space(&s, &brute, &aset_brute, 1, 1, 1);
             check(aset_space_build(&space, &s.scene, f->method, f->options + o, &s.arena) == ASET_OK, "%s %s, option %zu",
-                  f->name, d.name, o);
-            run_duel(&d, &s, &brute, &space, n_rays);
-            hits += d.hits;
-            rays += d.rays;
+                  f->name, d.duel.name, o);
+            run_match(&d, &s, &brute, &space, n_rays);
+            hits += d.duel.hits;
+            rays += d.duel.rays;
             cells += d.cells;
             aset_arena_release(&s.arena, &mark);
         }
@@ -892,46 +690,29 @@ static void test_methods__rays_from_the_volumes_own_faces(void **state) {
     }
 }
 
-/* Points times scale, then moved. */
-static void model_move(model *m, double scale, dvec offset) {
-    for (uint32_t i = 0; i < m->n_things; i++) {
-        thing *t = m->things + i;
-        for (int k = 0; k < THING_POINTS_MAX; k++) {
-            t->points[k] = dvec_real(dvec_along(offset, scale, dvec_of(t->points[k])));
-        }
-        t->radii[0] = (aset_real)(scale * (double)t->radii[0]);
-        t->radii[1] = (aset_real)(scale * (double)t->radii[1]);
-    }
-}
-
 static void test_methods__scenes_away_from_the_origin(void **state) {
     (void)state;
-    static const struct {
-        double scale;
-        dvec offset;
-    } moves[] = {{1, {1000, -2000, 500}}, {1e-3, {10, 0, -7}}, {1e-6, {0, 0, 0}}, {1e5, {1e6, 0, 1e5}},
-                 {1e12, {0, 1e13, 0}}};
-    for (size_t i = 0; i < COUNT_OF(moves); i++) {
+    for (size_t i = 0; i < FAR_PLACES; i++) {
         random_state r = random_start(seed_of(180 + i));
         model m;
         stage s;
         model_random(&m, &r, 30, 5, 0.3, 4);
-        model_move(&m, moves[i].scale, moves[i].offset);
+        model_move(&m, far_places + i);
         stage_open_model(&s, &m, ROOM);
         for (size_t f = SET; f < METHODS; f++) {
             for (size_t o = 0; o < families[f].n_options; o++) {
-                static duel d;
+                static match d;
                 aset_space brute, space;
                 aset_mark mark = aset_arena_mark(&s.arena);
                 memset(&d, 0, sizeof d);
-                d.name = "moved";
-                d.seed = seed_of(190 + i);
-                d.depth = families[f].options[o].depth;
-                d.leaf = families[f].options[o].leaf;
+                d.duel.name = "moved";
+                d.duel.seed = seed_of(190 + i);
+                d.duel.depth = families[f].options[o].depth;
+                d.duel.leaf = families[f].options[o].leaf;
                 stage_space(&s, &brute, &aset_brute, 1, 1, 1);
                 build_option(&space, &s, families + f, o);
-                run_duel(&d, &s, &brute, &space, 220);
-                check(d.hits > 5, "%s, move %zu: %" PRIu64 " hits", families[f].name, i, d.hits);
+                run_match(&d, &s, &brute, &space, 220);
+                check(d.duel.hits > 5, "%s, move %zu: %" PRIu64 " hits", families[f].name, i, d.duel.hits);
                 aset_arena_release(&s.arena, &mark);
             }
         }
@@ -1063,23 +844,19 @@ static void check_marking(const stage *s, const aset_space *space, const aset_sp
             check_leaf(&l, l.region + cell, options);
         }
     }
-    int32_t v[3];
-    for (v[2] = 0; v[2] < (int32_t)n[2]; v[2]++) { /* and nothing stands in what is taken as empty */
-        for (v[1] = 0; v[1] < (int32_t)n[1]; v[1]++) {
-            for (v[0] = 0; v[0] < (int32_t)n[0]; v[0]++) {
-                voxel_box one = {{v[0], v[1], v[2]}, {v[0], v[1], v[2]}};
-                for (uint32_t face = 0; face < l.faces; face++) {
-                    if (l.cell[voxel_number(space, v) * l.faces + face] == NO_CELL) {
-                        assert_int_equal(standing(&l, &one, face), 0);
-                    }
-                }
-                if (l.by_leaf && l.leaf[voxel_number(space, v)] == voxel_number(space, v)) {
-                    leaf here = leaf_at(space, v);
-                    check_leaf(&l, &here.voxels, options);
-                }
+    int32_t v[3] = {0, 0, 0};
+    do { /* and nothing stands in what is taken as empty */
+        voxel_box one = {{v[0], v[1], v[2]}, {v[0], v[1], v[2]}};
+        for (uint32_t face = 0; face < l.faces; face++) {
+            if (l.cell[voxel_number(space, v) * l.faces + face] == NO_CELL) {
+                assert_int_equal(standing(&l, &one, face), 0);
             }
         }
-    }
+        if (l.by_leaf && l.leaf[voxel_number(space, v)] == voxel_number(space, v)) {
+            leaf here = leaf_at(space, v);
+            check_leaf(&l, &here.voxels, options);
+        }
+    } while (voxel_next(v, n));
     free(listed.refers);
     layout_close(&l);
 }
@@ -1432,12 +1209,12 @@ static void test_methods__automatic_sizes_shrink_to_fit(void **state) {
  */
 static uint64_t duel_in(const model *m, const char *name, const family *f, const aset_space_options *options, size_t room,
                         uint32_t n_rays) {
-    static duel d;
+    static match d;
     memset(&d, 0, sizeof d);
-    d.name = name;
-    d.seed = seed_of(600);
-    d.depth = options != NULL ? options->depth : 0;
-    d.leaf = options != NULL ? options->leaf : 0;
+    d.duel.name = name;
+    d.duel.seed = seed_of(600);
+    d.duel.depth = options != NULL ? options->depth : 0;
+    d.duel.leaf = options != NULL ? options->leaf : 0;
     for (int trial = 0;; trial++) {
         stage s;
         aset_space brute, space;
@@ -1448,9 +1225,9 @@ static uint64_t duel_in(const model *m, const char *name, const family *f, const
               f->name, name, room, trial, (int)status);
         room += s.arena.missing;
         if (status == ASET_OK) {
-            run_duel(&d, &s, &brute, &space, n_rays);
+            run_match(&d, &s, &brute, &space, n_rays);
             stage_close(&s);
-            return d.hits;
+            return d.duel.hits;
         }
         stage_close(&s);
     }
@@ -1494,13 +1271,7 @@ static void test_methods__objects_in_one_plane(void **state) {
         random_state r = random_start(seed_of(620 + (uint64_t)axis));
         model m;
         model_start(&m);
-        for (int i = 0; i < 30; i++) {
-            aset_vec3 corner = random_in_cube(&r, 4), u = {0, 0, 0}, v = {0, 0, 0};
-            set_axis(&corner, axis, axis == 1 ? R(2.5) : 0);
-            set_axis(&u, (axis + 1) % 3, (aset_real)random_between(&r, 0.2, 3));
-            set_axis(&v, (axis + 2) % 3, (aset_real)random_between(&r, 0.2, 3));
-            model_rectangle(&m, corner, u, v);
-        }
+        model_in_one_plane(&m, &r, axis, 30);
         assert_true(duel_all(&m, "one plane", 88) > 0);
         model_free(&m);
     }
@@ -1540,23 +1311,12 @@ static void test_methods__slices_ascend_in_a_flat_scene(void **state) {
     }
 }
 
-/* Rectangles in whole numbers: in slices of four divisions, in the planes that octrees halve at, and sharing edges. */
 static void test_methods__objects_in_slices(void **state) {
     (void)state;
     random_state r = random_start(seed_of(630));
     model m;
     model_start(&m);
-    for (int axis = 0; axis < 3; axis++) {
-        for (int k = 0; k <= 4; k++) {
-            aset_vec3 corner = {0, 0, 0}, u = {0, 0, 0}, v = {0, 0, 0};
-            set_axis(&corner, axis, (aset_real)k);
-            set_axis(&corner, (axis + 1) % 3, (aset_real)random_below(&r, 3));
-            set_axis(&corner, (axis + 2) % 3, (aset_real)random_below(&r, 3));
-            set_axis(&u, (axis + 1) % 3, (aset_real)(1 + random_below(&r, 2)));
-            set_axis(&v, (axis + 2) % 3, (aset_real)(1 + random_below(&r, 2)));
-            model_rectangle(&m, corner, u, v);
-        }
-    }
+    model_in_slices(&m, &r);
     assert_true(duel_all(&m, "in slices", 300) > 0);
     stage s;
     aset_space brute;
@@ -1569,19 +1329,9 @@ static void test_methods__objects_in_slices(void **state) {
         aset_mark mark = aset_arena_mark(&s.arena);
         assert_int_equal(aset_space_build(&space, &s.scene, families[f].method, &fours, &s.arena), ASET_OK);
         aset_tracer b = stage_tracer(&s, &space);
-        for (int i = 0; i < 4000; i++) { /* whole numbers too: straight onto corners and edges */
-            aset_ray ray = {{0, 0, 0}, {0, 0, 0}, REAL_INFINITY};
-            for (int k = 0; k < 3; k++) {
-                set_axis(&ray.origin, k, (aset_real)random_below(&r, 9) - 2);
-                set_axis(&ray.direction, k, (aset_real)random_below(&r, 5) - 2);
-            }
-            ray.direction.x = ray.direction.x == 0 && ray.direction.y == 0 && ray.direction.z == 0 ? 1 : ray.direction.x;
-            aset_hit expected, hit;
-            bool expected_found, found;
-            aset_closest_hit(&expected_found, &expected, &a, &ray, false, NULL);
-            aset_closest_hit(&found, &hit, &b, &ray, false, NULL);
-            check(found == expected_found && (!found || same_hit(&hit, &expected)), "%s, " SEED ", ray %d", families[f].name,
-                  r.seed, i);
+        for (int i = 0; i < 4000; i++) {
+            aset_ray ray = random_whole_ray(&r);
+            check(same_closest(&a, &b, &ray, NULL), "%s, " SEED ", ray %d", families[f].name, r.seed, i);
         }
         aset_arena_release(&s.arena, &mark);
     }
@@ -1594,12 +1344,9 @@ static void test_methods__objects_in_one_point(void **state) {
     (void)state;
     static const aset_vec3 places[3] = {{0, 0, 0}, {1, 2, -3}, {R(1e6), 0, R(1e-6)}};
     for (int i = 0; i < 3; i++) {
-        const aset_vec3 points[3] = {places[i], places[i], places[i]};
         model m;
         model_start(&m);
-        for (int k = 0; k < 5; k++) {
-            model_polygon(&m, points, NULL, 3);
-        }
+        model_in_one_point(&m, places[i], 5);
         assert_int_equal(duel_all(&m, "one point", 44), 0);
         model_free(&m);
     }
@@ -1651,13 +1398,8 @@ static void test_methods__one_object_a_million_times_larger(void **state) {
             aset_tracer b = stage_tracer(&s, &space);
             for (int i = 0; i < 200; i++) {
                 aset_ray ray = {random_in_cube(&r, 10), random_direction(&r), REAL_INFINITY};
-                aset_hit expected, hit;
-                bool expected_found, found;
                 ray.origin.z += 10;
-                aset_closest_hit(&expected_found, &expected, &a, &ray, false, NULL);
-                aset_closest_hit(&found, &hit, &b, &ray, false, NULL);
-                check(found == expected_found && (!found || same_hit(&hit, &expected)), "%s, " SEED ", ray %d",
-                      families[f].name, r.seed, i);
+                check(same_closest(&a, &b, &ray, NULL), "%s, " SEED ", ray %d", families[f].name, r.seed, i);
             }
             aset_arena_release(&s.arena, &mark);
         }
@@ -1896,17 +1638,12 @@ static void draw(const stage *s, const aset_space *space, aset_scratch *scratch,
 
 static void test_methods__pictures_are_brute_forces(void **state) {
     (void)state;
-    static const struct {
-        const char *name;
-        uint32_t size;
-    } scenes[] = {{"balls", 2}, {"gears", 1}, {"mount", 3}, {"rings", 2},
-                  {"teapot", 2}, {"tetra", 3}, {"tree", 5}, {"snow", 0}};
-    for (size_t i = 0; i < COUNT_OF(scenes); i++) {
+    for (size_t i = 0; i < SMALL_SCENES; i++) {
         static unsigned char expected[PICTURE_BYTES], pixels[PICTURE_BYTES];
         stage s;
         aset_space space;
         aset_scratch scratch;
-        if (!stage_open_procedural(&s, scenes[i].name, scenes[i].size, ROOM)) {
+        if (!stage_open_procedural(&s, small_scenes[i].name, small_scenes[i].size, ROOM)) {
             continue;
         }
         assert_int_equal(aset_scratch_init(&scratch, 0, &s.arena), ASET_OK);
@@ -1919,8 +1656,8 @@ static void test_methods__pictures_are_brute_forces(void **state) {
                 assert_int_equal(aset_space_build(&space, &s.scene, families[f].method, options, &s.arena), ASET_OK);
                 memset(pixels, 0x77, sizeof pixels);
                 draw(&s, &space, &scratch, pixels);
-                check(memcmp(pixels, expected, sizeof pixels) == 0, "%s by %s, option %zu", scenes[i].name, families[f].name,
-                      o);
+                check(memcmp(pixels, expected, sizeof pixels) == 0, "%s by %s, option %zu", small_scenes[i].name,
+                      families[f].name, o);
                 aset_arena_release(&s.arena, &mark);
             }
         }

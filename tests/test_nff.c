@@ -4,25 +4,16 @@
  * In inputs that must fail, '@' stands before the byte that the report has to name; the mark is not part of the input. Every
  * input is read in pieces of 1, 2, 7 and all bytes.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "support/support.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "aset/load.h"
 
 #include "../lib/load/reader.h"
 
 #define ALL_KINDS (ASET_WITH_POLYGONS && ASET_WITH_PATCHES && ASET_WITH_SPHERES && ASET_WITH_CONES)
-#define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
 
 #if ASET_REAL_BITS == 32
 #define EXACT "%.9g" /* enough digits to come back as the same number */
@@ -38,39 +29,6 @@
 #define FILL "f 1 0.5 0 0.75 0.25 3 0 0\n"
 #define FILL_LOG "fill 1 0.5 0 0.75 0.25 3 0 0 two; "
 
-/* ---- an input ---- */
-
-typedef struct source {
-    const char *bytes;
-    size_t size, at, chunk;
-    size_t fail_at; /* the callback fails instead of giving the byte of this number */
-    bool ended;
-} source;
-
-static ptrdiff_t give(void *context, void *buffer, size_t size) {
-    source *from = context;
-    assert_true(size > 0);
-    assert_false(from->ended); /* nobody asks again after the end */
-    if (from->at >= from->fail_at) {
-        return -1;
-    }
-    size_t n = from->size - from->at;
-    n = n < size ? n : size;
-    n = n < from->chunk ? n : from->chunk;
-    n = n < from->fail_at - from->at ? n : from->fail_at - from->at;
-    memcpy(buffer, from->bytes + from->at, n);
-    from->at += n;
-    from->ended = n == 0;
-    return (ptrdiff_t)n;
-}
-
-static const size_t chunks[] = {1, 2, 7, SIZE_MAX};
-
-static source source_of(const char *bytes, size_t size, size_t chunk) {
-    const source from = {bytes, size, 0, chunk, SIZE_MAX, false};
-    return from;
-}
-
 /* ---- a sink that writes down ---- */
 
 typedef struct recorder {
@@ -83,14 +41,7 @@ typedef struct recorder {
 } recorder;
 
 static void put(recorder *to, const char *text) {
-    const size_t n = strlen(text);
-    while (to->length + n + 1 > to->capacity) {
-        to->capacity = to->capacity * 2 + 256;
-        to->text = realloc(to->text, to->capacity);
-        assert_non_null(to->text);
-    }
-    memcpy(to->text + to->length, text, n + 1);
-    to->length += n;
+    to->text = text_append(to->text, &to->length, &to->capacity, text);
 }
 
 static void put_numbers(recorder *to, unsigned n, ...) {
@@ -254,7 +205,7 @@ static aset_sink recorder_sink(recorder *to) {
 
 /* ---- what most cases do ---- */
 
-static aset_status load(source from, recorder *to, aset_load_report *report) {
+static aset_status load(byte_source from, recorder *to, aset_load_report *report) {
     const aset_sink sink = recorder_sink(to);
     memset(report, 0xa5, sizeof *report);
     return aset_load_nff(&sink, give, &from, NULL, report);
@@ -282,13 +233,6 @@ static void expect_log(const char *text, const char *log) {
     expect_log_bytes(text, strlen(text), log);
 }
 
-typedef struct bad_case {
-    const char *text; /* with its mark */
-    uint32_t line;
-    aset_status status;
-    const char *token, *what; /* what: a part of the sentence */
-} bad_case;
-
 static void expect_bad_bytes(const char *bytes, size_t size, size_t offset, const bad_case *bad) {
     for (size_t i = 0; i < COUNT_OF(chunks); i++) {
         recorder to;
@@ -309,14 +253,9 @@ static void expect_bad_bytes(const char *bytes, size_t size, size_t offset, cons
 }
 
 static void expect_bad(const bad_case *bad) {
-    const size_t size = strlen(bad->text);
-    const size_t offset = strcspn(bad->text, "@");
-    assert_true(offset < size);
-    char *text = malloc(size);
-    assert_non_null(text);
-    memcpy(text, bad->text, offset);
-    memcpy(text + offset, bad->text + offset + 1, size - offset - 1);
-    expect_bad_bytes(text, size - 1, offset, bad);
+    size_t size, offset;
+    char *text = bad_input(bad, &size, &offset);
+    expect_bad_bytes(text, size, offset, bad);
     free(text);
 }
 
@@ -400,7 +339,7 @@ static void test_nff__one_sided_opaque(void **state) {
     static const char text[] = VIEW "f 1 1 1 1 0 3 0 0\n";
     static const char log[] = VIEW_LOG "fill 1 1 1 1 0 3 0 0 one; ";
 #endif
-    source from = source_of(text, sizeof text - 1, 1);
+    byte_source from = source_of(text, sizeof text - 1, 1);
     recorder to;
     aset_load_report report;
     recorder_init(&to, " %.6g", false);
@@ -808,7 +747,7 @@ static void test_nff__read_fails_at_every_byte(void **state) {
             recorder to;
             aset_load_report report;
             recorder_init(&to, " %.6g", false);
-            source from = source_of(text, sizeof text - 1, chunks[i]);
+            byte_source from = source_of(text, sizeof text - 1, chunks[i]);
             from.fail_at = fail_at;
             assert_int_equal(load(from, &to, &report), ASET_ERR_READ);
             assert_int_equal(report.offset, fail_at);
@@ -896,33 +835,25 @@ static void test_nff__every_prefix(void **state) {
 }
 #endif
 
-static uint64_t random_state;
+static random_state numbers; /* a test that draws sets its state */
 
-/* splitmix64 (Steele, Lea, Flood 2014) */
-static uint64_t random_next(void) {
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
-
-static uint32_t random_below(uint32_t n) {
-    return (uint32_t)(random_next() % n);
+static uint32_t number_below(uint32_t n) {
+    return (uint32_t)(random_next(&numbers) % n);
 }
 
 /* One byte of a good file replaced, dropped or doubled: any answer but a crash, and an error tells its place. */
 static void test_nff__damaged_files(void **state) {
     (void)state;
     static const char good[] = ONE_OF_ALL;
-    random_state = 20260101;
+    numbers.state = 20260101;
     for (int round = 0; round < 20000; round++) {
         char text[sizeof good + 1];
         size_t size = sizeof good - 1;
-        const size_t at = random_below((uint32_t)size);
+        const size_t at = number_below((uint32_t)size);
         memcpy(text, good, size);
-        switch (random_below(3)) {
+        switch (number_below(3)) {
         case 0:
-            text[at] = (char)random_below(256);
+            text[at] = (char)number_below(256);
             break;
         case 1:
             memmove(text + at, text + at + 1, --size - at);
@@ -960,7 +891,7 @@ static void test_nff__tokens_know_their_lines(void **state) {
     for (size_t i = 0; i < COUNT_OF(chunks); i++) {
         aset_reader reader;
         aset_load_report report;
-        source from = source_of(text, sizeof text - 1, chunks[i]);
+        byte_source from = source_of(text, sizeof text - 1, chunks[i]);
         aset_reader_init(&reader, give, &from, &report);
         for (size_t k = 0; k < COUNT_OF(expected); k++) {
             assert_int_equal(aset_reader_keep(&reader), ASET_OK);
@@ -981,7 +912,7 @@ static void test_nff__comment_byte_is_a_choice(void **state) {
     (void)state;
     aset_reader reader;
     aset_load_report report;
-    source from = source_of("a#b ! c", 7, 1);
+    byte_source from = source_of("a#b ! c", 7, 1);
     aset_reader_init(&reader, give, &from, &report);
     reader.comment = -1;
     assert_int_equal(aset_reader_next(&reader), ASET_OK);
@@ -1008,7 +939,7 @@ static void test_nff__skip_peek_and_raw(void **state) {
             unsigned char got[sizeof binary + 5];
             const unsigned char *seen;
             size_t n;
-            source from = source_of(text, (size_t)header + sizeof binary, chunks[i]);
+            byte_source from = source_of(text, (size_t)header + sizeof binary, chunks[i]);
             aset_reader_init(&reader, give, &from, &report);
             assert_int_equal(aset_reader_next(&reader), ASET_OK);
             assert_int_equal(aset_reader_skip_line(&reader), ASET_OK);
@@ -1123,27 +1054,27 @@ static void test_nff__whole_numbers(void **state) {
 /* Digits, point and exponent at random; exponents reach beyond both ends of the range. */
 static void random_decimal(char text[ASET_READER_TOKEN]) {
     const uint32_t range = ASET_REAL_BITS == 32 ? 60 : 350;
-    const uint32_t n = 1 + random_below(random_below(4) == 0 ? 100 : 20), point = random_below(n + 1);
+    const uint32_t n = 1 + number_below(number_below(4) == 0 ? 100 : 20), point = number_below(n + 1);
     size_t at = 0;
-    if (random_below(2) == 0) {
-        text[at++] = random_below(4) == 0 ? '+' : '-';
+    if (number_below(2) == 0) {
+        text[at++] = number_below(4) == 0 ? '+' : '-';
     }
     for (uint32_t i = 0; i < n; i++) {
         if (i == point) {
             text[at++] = '.';
         }
-        text[at++] = (char)('0' + random_below(10));
+        text[at++] = (char)('0' + number_below(10));
     }
     text[at] = '\0';
-    if (random_below(3) != 0) {
-        const int exponent = (int)random_below(2 * range + 1) - (int)range;
-        snprintf(text + at, ASET_READER_TOKEN - at, random_below(2) == 0 ? "e%d" : "E%d", exponent);
+    if (number_below(3) != 0) {
+        const int exponent = (int)number_below(2 * range + 1) - (int)range;
+        snprintf(text + at, ASET_READER_TOKEN - at, number_below(2) == 0 ? "e%d" : "E%d", exponent);
     }
 }
 
 static void test_nff__numbers_equal_the_c_library_s(void **state) {
     (void)state;
-    random_state = 88;
+    numbers.state = 88;
     for (int i = 0; i < 100000; i++) {
         char text[ASET_READER_TOKEN];
         random_decimal(text);
@@ -1154,9 +1085,9 @@ static void test_nff__numbers_equal_the_c_library_s(void **state) {
 /* Any finite aset_real comes back from 9 or 17 digits. */
 static void test_nff__numbers_round_trip(void **state) {
     (void)state;
-    random_state = 1987;
+    numbers.state = 1987;
     for (int i = 0; i < 100000; i++) {
-        const uint64_t bits = random_next();
+        const uint64_t bits = random_next(&numbers);
         aset_real number, value = 0;
         char text[64];
         memcpy(&number, &bits, sizeof number < sizeof bits ? sizeof number : sizeof bits);
@@ -1184,11 +1115,12 @@ static void test_nff__ties(void **state) {
         skip();
     }
 #endif
-    random_state = 24;
+    numbers.state = 24;
     const int mantissa_bits = ASET_REAL_BITS == 32 ? 24 : 53, exponents = ASET_REAL_BITS == 32 ? 80 : 100;
     for (int i = 0; i < 20000; i++) {
-        const uint64_t mantissa = (random_next() >> (64 - mantissa_bits) | (uint64_t)1 << (mantissa_bits - 1)) * 2 + 1;
-        const wider tie = (wider)ldexpl((long double)mantissa, (int)random_below((uint32_t)exponents) - exponents);
+        const uint64_t word = random_next(&numbers) >> (64 - mantissa_bits);
+        const uint64_t mantissa = (word | (uint64_t)1 << (mantissa_bits - 1)) * 2 + 1;
+        const wider tie = (wider)ldexpl((long double)mantissa, (int)number_below((uint32_t)exponents) - exponents);
         char text[ASET_READER_TOKEN];
         snprintf(text, sizeof text, format, tie);
         expect_reference(text);

@@ -2,111 +2,19 @@
  * test_space.c - spaces against brute force on the same seeded rays, bit for bit; that no object is met twice; that every
  * cell is marked as the rule says; structure counts; hostile scenes.
  */
-#include "support/support.h"
+#include "support/rays.h"
 
 #include "space/cells.h"
 #include "space/slices.h"
-#include "space/walk.h"
 
 #define ROOM ((size_t)6 << 20)
 
-static aset_vec3 real3(double x, double y, double z) {
-    return dvec_real(dvec_make(x, y, z));
-}
-
-static void set_axis(aset_vec3 *v, int a, aset_real x) {
-    *(a == 0 ? &v->x : a == 1 ? &v->y : &v->z) = x;
-}
-
-static double size_of(const aset_scene *scene) {
-    dvec span = dvec_sub(dvec_of(scene->high), dvec_of(scene->low));
-    double size = fmax(span.x, fmax(span.y, span.z));
-    return size > 0 ? size : 1;
-}
-
-/* A point in the scene's box, grown by so many sizes. */
-static dvec random_in_scene(random_state *r, const aset_scene *scene, double grown) {
-    dvec low = dvec_of(scene->low), high = dvec_of(scene->high);
-    double g = grown * size_of(scene);
-    double x = random_between(r, low.x - g, high.x + g), y = random_between(r, low.y - g, high.y + g);
-    return dvec_make(x, y, random_between(r, low.z - g, high.z + g));
-}
-
 /* --- rays of all sorts --- */
 
-typedef enum ray_sort {
-    FROM_OUTSIDE,
-    FROM_INSIDE,
-    ALONG_AXIS,
-    NEARLY_ALONG_AXIS,
-    IN_SLICE,
-    FROM_SLICE,
-    THROUGH_CORNERS,
-    ALONG_BOX,
-    FROM_SURFACE,
-    IN_SURFACE,
-    FROM_FAR,
-    RAY_SORTS
-} ray_sort;
+static const ray_sort sorts[] = {FROM_OUTSIDE, FROM_INSIDE, ALONG_AXIS, NEARLY_ALONG_AXIS, IN_SLICE, FROM_SLICE,
+                                 THROUGH_CORNERS, ALONG_BOX, FROM_SURFACE, IN_SURFACE, FROM_FAR};
 
-static const char *const sort_names[RAY_SORTS] = {"from outside", "from inside", "along an axis", "nearly along an axis",
-                                                  "in a slice", "from a slice", "through corners", "along a box",
-                                                  "from a surface", "in a surface", "from far"};
-
-static aset_real random_slice(random_state *r, const aset_space *space, int a) {
-    return slices_plane(&space->slices, a, (int32_t)random_below(r, space->slices.n[a] + 1));
-}
-
-static void aim(aset_ray *ray, random_state *r, const aset_scene *scene) {
-    dvec target = random_in_scene(r, scene, 0);
-    dvec to = dvec_sub(target, dvec_of(ray->origin));
-    ray->direction = dvec_length(to) > 0 ? dvec_real(dvec_unit(to)) : real3(0, 0, 1);
-}
-
-/* Zeros of either sign. */
-static aset_real some_zero(random_state *r) {
-    return random_chance(r, 0.5) ? R(0.0) : -R(0.0);
-}
-
-static void turn_along_axis(aset_ray *ray, random_state *r) {
-    int axis = (int)random_below(r, 3);
-    for (int a = 0; a < 3; a++) {
-        set_axis(&ray->direction, a, a == axis ? (random_chance(r, 0.5) ? R(1) : R(-1)) : some_zero(r));
-    }
-}
-
-/* Components down to the smallest that there are. */
-static void turn_nearly_along_axis(aset_ray *ray, random_state *r) {
-    int axis = (int)random_below(r, 3);
-    for (int a = 0; a < 3; a++) {
-        double x = pow(10, random_between(r, -44, -3)) * (random_chance(r, 0.5) ? 1 : -1);
-        set_axis(&ray->direction, a, a == axis ? (random_chance(r, 0.5) ? R(1) : R(-1)) : (aset_real)x);
-    }
-}
-
-/* The origin on one, two or three slices; in_slice: the ray stays in one of them. */
-static void put_on_slices(aset_ray *ray, random_state *r, const aset_scene *scene, const aset_space *space, bool in_slice) {
-    int axis = (int)random_below(r, 3);
-    ray->origin = dvec_real(random_in_scene(r, scene, in_slice ? 0.3 : 0));
-    for (int a = 0; a < 3; a++) {
-        if (a == axis || random_chance(r, 0.3)) {
-            set_axis(&ray->origin, a, random_slice(r, space, a));
-        }
-    }
-    ray->direction = random_direction(r);
-    if (in_slice) {
-        if (random_chance(r, 0.3)) {
-            turn_along_axis(ray, r);
-        }
-        set_axis(&ray->direction, axis, some_zero(r));
-        if (ray->direction.x == 0 && ray->direction.y == 0 && ray->direction.z == 0) {
-            set_axis(&ray->direction, (axis + 1) % 3, 1);
-        }
-    } else if (random_chance(r, 0.3)) {
-        turn_along_axis(ray, r);
-    }
-}
-
+/* From a corner of voxels along a diagonal of its voxel. */
 static void put_through_corners(aset_ray *ray, random_state *r, const aset_space *space) {
     for (int a = 0; a < 3; a++) {
         int32_t k = (int32_t)random_below(r, space->slices.n[a]);
@@ -137,21 +45,6 @@ static dvec random_on_box(random_state *r, const aset_scene *scene) {
     return dvec_make(at[0], at[1], at[2]);
 }
 
-/* Along a face or an edge of an object's own box. */
-static void put_along_box(aset_ray *ray, random_state *r, const aset_scene *scene) {
-    aset_vec3 low, high;
-    aset_object_bounds(scene, random_below(r, scene->counts.objects), &low, &high);
-    ray->origin = dvec_real(random_in_scene(r, scene, 0.2));
-    turn_along_axis(ray, r);
-    for (int a = 0; a < 3; a++) {
-        bool lower = random_chance(r, 0.5);
-        aset_real side = a == 0 ? (lower ? low.x : high.x) : a == 1 ? (lower ? low.y : high.y) : lower ? low.z : high.z;
-        if (random_chance(r, 0.7)) {
-            set_axis(&ray->origin, a, side);
-        }
-    }
-}
-
 /*
  * From a hit onwards: any way, or in the surface's own plane, where t is a quotient of two numbers near 0 and nothing but
  * the clamp to the object's box holds it.
@@ -167,11 +60,8 @@ static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *sce
         target.x += span.x * random_between(r, 0, 1);
         target.y += span.y * random_between(r, 0, 1);
         target.z += span.z * random_between(r, 0, 1);
-        dvec to = dvec_sub(target, dvec_of(ray->origin));
-        ray->direction = dvec_length(to) > 0 ? dvec_real(dvec_unit(to)) : real3(0, 0, 1);
-        aset_real t = object_hit(scene, object, ray->origin, ray->direction);
-        if (t < REAL_INFINITY) {
-            ray->origin = dvec_real(dvec_along(dvec_of(ray->origin), (double)t, dvec_of(ray->direction)));
+        aim_at(ray, target);
+        if (move_to_hit(ray, scene, object)) {
             object_normals(scene, object, ray->origin, &shading, &normal);
             break;
         }
@@ -184,19 +74,11 @@ static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *sce
     }
 }
 
-static aset_ray random_ray(random_state *r, const aset_scene *scene, const aset_space *space, ray_sort sort) {
-    aset_ray ray;
-    ray.t_max = random_chance(r, 0.2) ? (aset_real)random_between(r, 0, 3 * size_of(scene)) : REAL_INFINITY;
-    ray.origin = dvec_real(random_in_scene(r, scene, sort == FROM_OUTSIDE ? 1.5 : sort == ALONG_AXIS ? 0.4 : 0));
-    aim(&ray, r, scene);
+static aset_ray random_ray(random_state *r, const aset_space *space, ray_sort sort) {
+    const aset_scene *scene = space->scene;
+    aset_ray ray = random_ray_common(r, space, sort, false);
     switch (sort) {
-    case FROM_INSIDE: ray.direction = random_direction(r); break;
-    case ALONG_AXIS: turn_along_axis(&ray, r); break;
-    case NEARLY_ALONG_AXIS: turn_nearly_along_axis(&ray, r); break;
-    case IN_SLICE: put_on_slices(&ray, r, scene, space, true); break;
-    case FROM_SLICE: put_on_slices(&ray, r, scene, space, false); break;
     case THROUGH_CORNERS: put_through_corners(&ray, r, space); break;
-    case ALONG_BOX: put_along_box(&ray, r, scene); break;
     case FROM_SURFACE: put_on_surface(&ray, r, scene, false); break;
     case IN_SURFACE: put_on_surface(&ray, r, scene, true); break;
     case FROM_FAR: {
@@ -213,140 +95,46 @@ static aset_ray random_ray(random_state *r, const aset_scene *scene, const aset_
 
 /* --- one ray through both --- */
 
-typedef struct duel {
-    const stage *stage;
-    aset_tracer brute, other;
-    uint8_t *seen; /* by the walk, for each object */
-    const char *name;
-    uint64_t seed;
-    uint64_t rays, hits, brute_tests, other_tests;
-} duel;
+typedef struct match {
+    duel duel;
+    uint64_t brute_tests, other_tests; /* of the closest hits */
+} match;
 
-#define DUEL_TEXT "%s, " SEED ", ray %" PRIu64 " %s, %s %" PRIu32 "x%" PRIu32 "x%" PRIu32
-#define DUEL_ARGS(d, sort)                                                                                             \
-    (d)->name, (d)->seed, (d)->rays, sort_names[sort], aset_method_name((d)->other.space->method),                     \
-        (d)->other.space->slices.n[0], (d)->other.space->slices.n[1], (d)->other.space->slices.n[2]
-
-static bool same_hit(const aset_hit *a, const aset_hit *b) {
-    return memcmp(&a->t, &b->t, sizeof a->t) == 0 && memcmp(&a->point, &b->point, sizeof a->point) == 0 &&
-           memcmp(&a->normal, &b->normal, sizeof a->normal) == 0 &&
-           memcmp(&a->geometric, &b->geometric, sizeof a->geometric) == 0 && a->object == b->object &&
-           a->material == b->material;
-}
-
-static void compare_queries(duel *d, const aset_ray *ray, ray_sort sort) {
+static void compare_queries(match *m, const aset_ray *ray, ray_sort sort) {
+    duel *d = &m->duel;
     aset_statistics brute, other;
-    aset_hit expected, hit;
-    bool expected_found, found, any, expected_any;
+    bool any, expected_any;
     uint32_t n_objects = d->stage->scene.counts.objects;
     memset(&brute, 0, sizeof brute);
     memset(&other, 0, sizeof other);
-    assert_int_equal(aset_closest_hit(&expected_found, &expected, &d->brute, ray, false, &brute), ASET_OK);
-    assert_int_equal(aset_closest_hit(&found, &hit, &d->other, ray, false, &other), ASET_OK);
-    check(found == expected_found, DUEL_TEXT, DUEL_ARGS(d, sort));
-    check(!found || same_hit(&hit, &expected), DUEL_TEXT ": object %" PRIu32 " at %.9g, not %" PRIu32 " at %.9g",
-          DUEL_ARGS(d, sort), hit.object, (double)hit.t, expected.object, (double)expected.t);
+    bool found = duel_closest(d, ray, sort, &brute, &other);
     check(brute.tests == n_objects, DUEL_TEXT, DUEL_ARGS(d, sort));
-    check(other.tests <= n_objects && other.test_hits <= other.tests, DUEL_TEXT, DUEL_ARGS(d, sort));
-    d->brute_tests += brute.tests;
-    d->other_tests += other.tests;
+    m->brute_tests += brute.tests;
+    m->other_tests += other.tests;
     assert_int_equal(aset_any_hit(&expected_any, &d->brute, ray, false, &brute), ASET_OK);
     assert_int_equal(aset_any_hit(&any, &d->other, ray, false, &other), ASET_OK);
-    check(any == expected_found && expected_any == expected_found, DUEL_TEXT, DUEL_ARGS(d, sort));
+    check(any == found && expected_any == found, DUEL_TEXT, DUEL_ARGS(d, sort));
     check(brute.tests == 2 * n_objects, DUEL_TEXT, DUEL_ARGS(d, sort));
-    d->hits += found;
-    if (found && d->rays % 8 == 0) { /* t_max itself is no hit any more */
-        aset_ray shorter = *ray;
-        shorter.t_max = hit.t;
-        aset_closest_hit(&expected_found, &expected, &d->brute, &shorter, false, NULL);
-        aset_closest_hit(&found, &hit, &d->other, &shorter, false, NULL);
-        check(found == expected_found && (!found || same_hit(&hit, &expected)), DUEL_TEXT, DUEL_ARGS(d, sort));
-    }
 }
 
-/* --- what a walk goes through --- */
-
-typedef struct inspection {
-    walk_request walk; /* first, so that the visitor finds the rest */
-    const duel *duel;
-    const aset_ray *ray;
-    aset_real last_t;
-    bool twice, late, backwards;
-} inspection;
-
-static aset_real inspect(walk_request *walk, const walk_cell *cell) {
-    inspection *in = (inspection *)walk;
-    if (cell->face != FACE_NONE) {
-        in->backwards = in->backwards || cell->t < in->last_t;
-        in->last_t = cell->t;
-    }
-    for (uint32_t i = 0; i < cell->n; i++) {
-        uint32_t object = cell->objects[i];
-        in->twice = in->twice || in->duel->seen[object] > 0;
-        in->duel->seen[object] = 1;
-        if (cell->face != FACE_NONE) {
-            const aset_scene *scene = &in->duel->stage->scene;
-            in->late = in->late || cell->t > object_hit(scene, object, in->ray->origin, in->ray->direction);
-        }
-    }
-    return REAL_INFINITY;
-}
-
-/* The ray as a query walks it: of unit length, and from outside started near the scene, where margins cover its rounding. */
-static aset_ray brought_near(const aset_scene *scene, const aset_ray *ray) {
-    aset_ray near = *ray;
-    near.direction = dvec_real(dvec_unit(dvec_of(ray->direction)));
-    probe p = probe_make(near.origin, near.direction);
-    aset_real t_in, t_out;
-    if (probe_box(&p, scene->low, scene->high, &t_in, &t_out) && (double)t_in > 0.0625 * size_of(scene)) {
-        dvec moved = dvec_along(dvec_of(near.origin), (double)t_in - 0.0625 * size_of(scene), dvec_of(near.direction));
-        near.origin = dvec_real(moved);
-    }
-    return near;
-}
-
-/*
- * Goes all the way: no object twice, cells in order, every object that the ray hits by itself among those met, and none met
- * in a cell that begins behind its hit (else a walk that stops at a nearer hit could lose it).
- */
-static void inspect_walk(duel *d, const aset_ray *ray, ray_sort sort) {
-    const aset_scene *scene = &d->stage->scene;
-    inspection in;
-    memset(&in, 0, sizeof in);
-    memset(d->seen, 0, scene->counts.objects);
-    aset_ray unit = brought_near(scene, ray);
-    in.walk.visit = inspect;
-    in.walk.limit = REAL_INFINITY;
-    in.walk.wants_references = true;
-    in.duel = d;
-    in.ray = &unit;
-    in.last_t = -REAL_INFINITY;
-    probe p = probe_make(unit.origin, unit.direction);
-    d->other.space->method->go(d->other.space, &p, &in.walk);
-    check(!in.twice, DUEL_TEXT, DUEL_ARGS(d, sort));
-    check(!in.backwards, DUEL_TEXT, DUEL_ARGS(d, sort));
-    check(!in.late, DUEL_TEXT, DUEL_ARGS(d, sort));
-    for (uint32_t i = 0; i < scene->counts.objects; i++) {
-        check(d->seen[i] > 0 || !(object_hit(scene, i, unit.origin, unit.direction) < REAL_INFINITY),
-              DUEL_TEXT ": object %" PRIu32 " missed", DUEL_ARGS(d, sort), i);
-    }
-}
-
-static void run_duel(duel *d, const stage *s, const aset_space *brute, const aset_space *space, uint32_t n_rays) {
+static void run_match(match *m, const stage *s, const aset_space *brute, const aset_space *space, uint32_t n_rays) {
+    duel *d = &m->duel;
     random_state r = random_start(d->seed);
-    d->stage = s;
-    d->brute = stage_tracer(s, brute);
-    d->other = stage_tracer(s, space);
-    d->seen = malloc(s->scene.counts.objects + 1);
+    duel_open(d, s, brute, space);
     for (uint32_t i = 0; i < n_rays; i++, d->rays++) {
-        ray_sort sort = (ray_sort)(i % RAY_SORTS);
-        aset_ray ray = random_ray(&r, &s->scene, space, sort);
-        compare_queries(d, &ray, sort);
+        ray_sort sort = sorts[i % COUNT_OF(sorts)];
+        aset_ray ray = random_ray(&r, space, sort);
+        compare_queries(m, &ray, sort);
         if (sort != FROM_FAR && i % 3 == 0) {
-            inspect_walk(d, &ray, sort);
+            inspection in;
+            memset(&in, 0, sizeof in);
+            in.walk.visit = inspect;
+            ray = brought_near(&s->scene, &ray);
+            inspect_walk(&in, d, &ray, sort);
+            inspect_seen(d, &ray, sort);
         }
     }
-    free(d->seen);
+    duel_close(d);
 }
 
 static const uint32_t grids[][3] = {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {7, 7, 7}, {30, 30, 30}, {5, 1, 13}, {1, 40, 2},
@@ -383,31 +171,21 @@ static uint64_t duel_model(model *m, const char *name, uint64_t seed, uint32_t n
     for (size_t f = 0; f < COUNT_OF(forms); f++) {
         stage s;
         aset_space brute, space;
-        duel d;
+        match d;
         memset(&d, 0, sizeof d);
-        d.name = name;
-        d.seed = seed + 1000 * f;
+        d.duel.name = name;
+        d.duel.seed = seed + 1000 * f;
+        d.duel.depth = forms[f].depth;
+        d.duel.leaf = forms[f].leaf;
         stage_open_model(&s, m, ROOM);
         stage_space(&s, &brute, &aset_brute, 1, 1, 1);
         build_form(&s, &space, f);
-        run_duel(&d, &s, &brute, &space, n_rays / forms[f].share);
-        hits += forms[f].method == &aset_mset ? d.hits : 0;
+        run_match(&d, &s, &brute, &space, n_rays / forms[f].share);
+        hits += forms[f].method == &aset_mset ? d.duel.hits : 0;
         stage_close(&s);
     }
     model_free(m);
     return hits;
-}
-
-/* Points times scale, then moved. */
-static void model_move(model *m, double scale, dvec offset) {
-    for (uint32_t i = 0; i < m->n_things; i++) {
-        thing *t = m->things + i;
-        for (int k = 0; k < THING_POINTS_MAX; k++) {
-            t->points[k] = dvec_real(dvec_along(offset, scale, dvec_of(t->points[k])));
-        }
-        t->radii[0] = (aset_real)(scale * (double)t->radii[0]);
-        t->radii[1] = (aset_real)(scale * (double)t->radii[1]);
-    }
 }
 
 /* --- equal to brute force --- */
@@ -452,39 +230,32 @@ static void test_space__all_equal_brute_on_mixed_sizes(void **state) {
 
 static void test_space__all_equal_brute_away_from_the_origin(void **state) {
     (void)state;
-    static const struct {
-        double scale;
-        dvec offset;
-    } moves[] = {{1, {1000, -2000, 500}}, {1e-3, {10, 0, -7}}, {1e-6, {0, 0, 0}}, {1e5, {1e6, 0, 1e5}},
-                 {1e12, {0, 1e13, 0}}};
-    for (size_t i = 0; i < COUNT_OF(moves); i++) {
+    for (size_t i = 0; i < FAR_PLACES; i++) {
         random_state r = random_start(seed_of(30 + i));
         model m;
         model_random(&m, &r, 50, 5, 0.3, 4);
-        model_move(&m, moves[i].scale, moves[i].offset);
+        model_move(&m, far_places + i);
         assert_true(duel_model(&m, "moved", r.seed, 400) > 80);
     }
 }
 
 static void test_space__all_equal_brute_on_procedural_scenes(void **state) {
     (void)state;
-    static const struct {
-        const char *name;
-        uint32_t size;
-    } scenes[] = {{"balls", 2}, {"gears", 1}, {"mount", 3}, {"rings", 2}, {"teapot", 2}, {"tetra", 3}, {"tree", 5}};
-    for (size_t i = 0; i < COUNT_OF(scenes); i++) {
+    for (size_t i = 0; i < SPD_SCENES; i++) {
         for (size_t f = i % 2; f < COUNT_OF(forms); f += 2) {
             stage s;
             aset_space brute, space;
-            duel d;
+            match d;
             memset(&d, 0, sizeof d);
-            d.name = scenes[i].name;
-            d.seed = seed_of(40 + 100 * i + f);
-            if (stage_open_procedural(&s, scenes[i].name, scenes[i].size, ROOM)) {
+            d.duel.name = small_scenes[i].name;
+            d.duel.seed = seed_of(40 + 100 * i + f);
+            d.duel.depth = forms[f].depth;
+            d.duel.leaf = forms[f].leaf;
+            if (stage_open_procedural(&s, small_scenes[i].name, small_scenes[i].size, ROOM)) {
                 stage_space(&s, &brute, &aset_brute, 1, 1, 1);
                 build_form(&s, &space, f);
-                run_duel(&d, &s, &brute, &space, 300);
-                assert_true(d.hits > 25);
+                run_match(&d, &s, &brute, &space, 300);
+                assert_true(d.duel.hits > 25);
                 stage_close(&s);
             }
         }
@@ -494,20 +265,13 @@ static void test_space__all_equal_brute_on_procedural_scenes(void **state) {
 /* --- hostile scenes --- */
 
 #if ASET_WITH_POLYGONS
-/* Everything in one plane, which with an odd grid also is a slice's. */
 static void test_space__objects_in_one_plane(void **state) {
     (void)state;
     for (int axis = 0; axis < 3; axis++) {
         random_state r = random_start(seed_of(200 + (uint64_t)axis));
         model m;
         model_random(&m, &r, 0, 1, 1, 1);
-        for (int i = 0; i < 50; i++) {
-            aset_vec3 corner = random_in_cube(&r, 4), u = {0, 0, 0}, v = {0, 0, 0};
-            set_axis(&corner, axis, axis == 1 ? R(2.5) : 0);
-            set_axis(&u, (axis + 1) % 3, (aset_real)random_between(&r, 0.2, 3));
-            set_axis(&v, (axis + 2) % 3, (aset_real)random_between(&r, 0.2, 3));
-            model_rectangle(&m, corner, u, v);
-        }
+        model_in_one_plane(&m, &r, axis, 50);
         assert_true(duel_model(&m, "one plane", r.seed, 500) > 150);
     }
 }
@@ -535,12 +299,8 @@ static void test_space__far_rays_at_the_edges_of_a_flat_scene(void **state) {
         build_form(&s, &space, i / 3);
         aset_tracer a = stage_tracer(&s, &brute), b = stage_tracer(&s, &space);
         for (int k = 0; k < 1500; k++) {
-            aset_ray ray = random_ray(&r, &s.scene, &space, FROM_FAR);
-            aset_hit expected, hit;
-            bool expected_found, found;
-            aset_closest_hit(&expected_found, &expected, &a, &ray, false, NULL);
-            aset_closest_hit(&found, &hit, &b, &ray, false, NULL);
-            check(found == expected_found && (!found || same_hit(&hit, &expected)), SEED ", ray %d", r.seed, k);
+            aset_ray ray = random_ray(&r, &space, FROM_FAR);
+            check(same_closest(&a, &b, &ray, NULL), SEED ", ray %d", r.seed, k);
         }
         stage_close(&s);
         model_free(&m);
@@ -552,58 +312,34 @@ static void test_space__objects_in_one_point(void **state) {
     (void)state;
     static const aset_vec3 places[2] = {{0, 0, 0}, {1, 2, -3}};
     for (int i = 0; i < 2; i++) {
-        const aset_vec3 points[3] = {places[i], places[i], places[i]};
         model m;
         model_start(&m);
-        for (int k = 0; k < 20; k++) {
-            model_polygon(&m, points, NULL, 3);
-        }
+        model_in_one_point(&m, places[i], 20);
         assert_true(duel_model(&m, "one point", seed_of(210), 200) == 0);
     }
 }
 
-/* Rectangles that lie exactly in slices, and share them with their neighbours. */
 static void test_space__objects_in_slices(void **state) {
     (void)state;
     random_state r = random_start(seed_of(220));
     model m;
     model_start(&m);
-    for (int axis = 0; axis < 3; axis++) {
-        for (int k = 0; k <= 4; k++) {
-            aset_vec3 corner = {0, 0, 0}, u = {0, 0, 0}, v = {0, 0, 0};
-            set_axis(&corner, axis, (aset_real)k);
-            set_axis(&corner, (axis + 1) % 3, (aset_real)random_below(&r, 3));
-            set_axis(&corner, (axis + 2) % 3, (aset_real)random_below(&r, 3));
-            set_axis(&u, (axis + 1) % 3, (aset_real)(1 + random_below(&r, 2)));
-            set_axis(&v, (axis + 2) % 3, (aset_real)(1 + random_below(&r, 2)));
-            model_rectangle(&m, corner, u, v);
-        }
-    }
+    model_in_slices(&m, &r);
     stage s;
     aset_space brute, space;
-    duel d;
+    match d;
     stage_open_model(&s, &m, ROOM);
     stage_space(&s, &brute, &aset_brute, 1, 1, 1);
     stage_space(&s, &space, &aset_mset, 4, 4, 4);
     memset(&d, 0, sizeof d);
-    d.name = "in slices";
-    d.seed = r.seed;
-    run_duel(&d, &s, &brute, &space, 8000);
-    assert_true(d.hits > 2000);
-    /* whole numbers too: straight onto corners and edges */
+    d.duel.name = "in slices";
+    d.duel.seed = r.seed;
+    run_match(&d, &s, &brute, &space, 8000);
+    assert_true(d.duel.hits > 2000);
     aset_tracer a = stage_tracer(&s, &brute), b = stage_tracer(&s, &space);
     for (int i = 0; i < 8000; i++) {
-        aset_ray ray = {{0, 0, 0}, {0, 0, 0}, REAL_INFINITY};
-        for (int axis = 0; axis < 3; axis++) {
-            set_axis(&ray.origin, axis, (aset_real)random_below(&r, 9) - 2);
-            set_axis(&ray.direction, axis, (aset_real)random_below(&r, 5) - 2);
-        }
-        ray.direction.x = ray.direction.x == 0 && ray.direction.y == 0 && ray.direction.z == 0 ? 1 : ray.direction.x;
-        aset_hit expected, hit;
-        bool expected_found, found;
-        aset_closest_hit(&expected_found, &expected, &a, &ray, false, NULL);
-        aset_closest_hit(&found, &hit, &b, &ray, false, NULL);
-        check(found == expected_found && (!found || same_hit(&hit, &expected)), SEED ", ray %d", r.seed, i);
+        aset_ray ray = random_whole_ray(&r);
+        check(same_closest(&a, &b, &ray, NULL), SEED ", ray %d", r.seed, i);
     }
     stage_close(&s);
     model_free(&m);
@@ -628,7 +364,7 @@ static void test_space__thousand_coincident_spheres(void **state) {
         stage_space(&s, &space, &aset_mset, grids[g][0], grids[g][1], grids[g][2]);
         aset_tracer tracer = stage_tracer(&s, &space);
         for (int i = 0; i < 200; i++) {
-            aset_ray ray = random_ray(&r, &s.scene, &space, (ray_sort)(i % ALONG_BOX));
+            aset_ray ray = random_ray(&r, &space, sorts[i % ALONG_BOX]);
             aset_real t = object_hit(&s.scene, 0, ray.origin, dvec_real(dvec_unit(dvec_of(ray.direction))));
             aset_hit hit;
             bool found;
@@ -663,12 +399,9 @@ static void test_space__one_object_a_million_times_larger(void **state) {
         uint32_t hits = 0;
         for (int i = 0; i < 500; i++) {
             aset_ray ray = random_ray_from(&r, 10);
-            aset_hit expected, hit;
-            bool expected_found, found;
+            bool found;
             ray.origin.z += 10;
-            aset_closest_hit(&expected_found, &expected, &a, &ray, false, NULL);
-            aset_closest_hit(&found, &hit, &b, &ray, false, NULL);
-            check(found == expected_found && (!found || same_hit(&hit, &expected)), SEED ", ray %d", r.seed, i);
+            check(same_closest(&a, &b, &ray, &found), SEED ", ray %d", r.seed, i);
             hits += found;
         }
         assert_true(hits > 150);
@@ -746,15 +479,15 @@ static void test_space__mset_tests_far_fewer_objects(void **state) {
     model m;
     stage s;
     aset_space brute, space;
-    duel d;
+    match d;
     memset(&d, 0, sizeof d);
     model_random(&m, &r, 300, 5, 0.1, 0.4);
     stage_open_model(&s, &m, ROOM);
     stage_space(&s, &brute, &aset_brute, 1, 1, 1);
     stage_space(&s, &space, &aset_mset, 20, 20, 20);
-    d.name = "many small";
-    d.seed = r.seed;
-    run_duel(&d, &s, &brute, &space, 2000);
+    d.duel.name = "many small";
+    d.duel.seed = r.seed;
+    run_match(&d, &s, &brute, &space, 2000);
     assert_int_equal(d.brute_tests, 2000 * 300);
     assert_true(d.other_tests * 10 < d.brute_tests);
     stage_close(&s);
@@ -776,7 +509,7 @@ static void test_space__brute_counts_every_test_and_hit(void **state) {
     stage_space(&s, &brute, &aset_brute, 1, 1, 1);
     aset_tracer tracer = stage_tracer(&s, &brute);
     for (uint32_t i = 0; i < 500; i++) {
-        aset_ray ray = random_ray(&r, &s.scene, &brute, FROM_OUTSIDE);
+        aset_ray ray = random_ray(&r, &brute, FROM_OUTSIDE);
         aset_hit hit;
         bool found;
         for (uint32_t k = 0; k < 60; k++) {
@@ -827,29 +560,25 @@ static void check_marks(const stage *s, const aset_space *space, uint64_t seed) 
     for (uint32_t i = 0; i < n_objects; i++) {
         expected_box(space, i, low[i], high[i]);
     }
-    int32_t v[3];
-    for (v[2] = 0; v[2] < (int32_t)n[2]; v[2]++) {
-        for (v[1] = 0; v[1] < (int32_t)n[1]; v[1]++) {
-            for (v[0] = 0; v[0] < (int32_t)n[0]; v[0]++) {
-                for (uint32_t face = 0; face < 6; face++) {
-                    uint32_t cell = cell_number(space, v, face), n_here = 0;
-                    for (uint32_t i = 0; i < n_objects; i++) {
-                        bool marked = expected_marked(low[i], high[i], v, face);
-                        n_here += marked;
-                        check(!marked || cell != UINT32_MAX, SEED ", object %" PRIu32 " missing", seed, i);
-                        check(cell == UINT32_MAX || (l.refers[(size_t)cell * n_objects + i] != 0) == marked,
-                              SEED ", voxel %d %d %d, face %" PRIu32 ", object %" PRIu32, seed, (int)v[0], (int)v[1],
-                              (int)v[2], face, i);
-                    }
-                    check((n_here > 0) == (cell != UINT32_MAX), SEED, seed);
-                    check(n_here == 0 || (cell < space->cells.n_cells && used[cell] == 0), SEED, seed);
-                    used[n_here > 0 ? cell : space->cells.n_cells] = 1;
-                    n_cells += n_here > 0;
-                    n_references += n_here;
-                }
+    int32_t v[3] = {0, 0, 0};
+    do {
+        for (uint32_t face = 0; face < 6; face++) {
+            uint32_t cell = cell_number(space, v, face), n_here = 0;
+            for (uint32_t i = 0; i < n_objects; i++) {
+                bool marked = expected_marked(low[i], high[i], v, face);
+                n_here += marked;
+                check(!marked || cell != UINT32_MAX, SEED ", object %" PRIu32 " missing", seed, i);
+                check(cell == UINT32_MAX || (l.refers[(size_t)cell * n_objects + i] != 0) == marked,
+                      SEED ", voxel %d %d %d, face %" PRIu32 ", object %" PRIu32, seed, (int)v[0], (int)v[1],
+                      (int)v[2], face, i);
             }
+            check((n_here > 0) == (cell != UINT32_MAX), SEED, seed);
+            check(n_here == 0 || (cell < space->cells.n_cells && used[cell] == 0), SEED, seed);
+            used[n_here > 0 ? cell : space->cells.n_cells] = 1;
+            n_cells += n_here > 0;
+            n_references += n_here;
         }
-    }
+    } while (voxel_next(v, n));
     check(n_cells == space->structure.nonempty && n_cells == space->cells.n_cells, SEED, seed);
     check(n_references == space->structure.references, SEED, seed);
     check(space->structure.leaves == 2 * ((uint64_t)(n[0] + 1) * n[1] * n[2] + (uint64_t)n[0] * (n[1] + 1) * n[2] +
@@ -894,7 +623,8 @@ static void test_space__slices_are_located_exactly(void **state) {
         aset_space space;
         uint32_t n = 1 + random_below(&r, 100);
         model_random(&m, &r, 10, random_between(&r, 0.1, 1000), 0.01, 4);
-        model_move(&m, 1, dvec_of(random_in_cube(&r, 1000)));
+        const far_place place = {1, dvec_of(random_in_cube(&r, 1000))};
+        model_move(&m, &place);
         stage_open_model(&s, &m, ROOM);
         stage_space(&s, &space, &aset_mset, n, 1, 2);
         for (int32_t k = 1; k < (int32_t)n; k++) {
@@ -927,9 +657,7 @@ static void test_space__slices_span_the_scene(void **state) {
         stage_open_model(&s, &m, ROOM);
         stage_space(&s, &space, &aset_mset, grids[g][0], grids[g][1], grids[g][2]);
         for (int a = 0; a < 3; a++) {
-            const aset_vec3 *low = &s.scene.low, *high = &s.scene.high;
-            double l = (double)(a == 0 ? low->x : a == 1 ? low->y : low->z);
-            double h = (double)(a == 0 ? high->x : a == 1 ? high->y : high->z);
+            double l = (double)axis_of(s.scene.low, a), h = (double)axis_of(s.scene.high, a);
             double first = (double)slices_plane(&space.slices, a, 0);
             double last = (double)slices_plane(&space.slices, a, (int32_t)grids[g][a]);
             assert_int_equal(space.slices.n[a], grids[g][a]);

@@ -1,4 +1,4 @@
-/* support.c - random numbers, models, guarded blocks, stages. */
+/* support.c - random numbers, models, guarded blocks, stages, inputs. */
 #include "support/support.h"
 
 #include "aset/procedural.h"
@@ -441,6 +441,56 @@ uint32_t cell_number(const aset_space *space, const int32_t voxel[3], uint32_t f
         return UINT32_MAX;
     }
     return cells->first[rank] + bits_count(cells->marks[rank] & ((UINT64_C(1) << place) - 1));
+}
+
+/* --- inputs for readers --- */
+
+const size_t chunks[4] = {1, 2, 7, SIZE_MAX};
+
+byte_source source_of(const char *bytes, size_t size, size_t chunk) {
+    const byte_source from = {bytes, size, 0, chunk, SIZE_MAX, false};
+    return from;
+}
+
+ptrdiff_t give(void *context, void *buffer, size_t size) {
+    byte_source *from = context;
+    assert_true(size > 0);
+    assert_false(from->ended);
+    if (from->at >= from->fail_at) {
+        return -1;
+    }
+    size_t n = from->size - from->at;
+    n = n < size ? n : size;
+    n = n < from->chunk ? n : from->chunk;
+    n = n < from->fail_at - from->at ? n : from->fail_at - from->at;
+    memcpy(buffer, from->bytes + from->at, n);
+    from->at += n;
+    from->ended = n == 0;
+    return (ptrdiff_t)n;
+}
+
+char *bad_input(const bad_case *bad, size_t *size, size_t *offset) {
+    const size_t length = strlen(bad->text), mark = strcspn(bad->text, "@");
+    assert_true(mark < length);
+    char *text = malloc(length);
+    assert_non_null(text);
+    memcpy(text, bad->text, mark);
+    memcpy(text + mark, bad->text + mark + 1, length - mark - 1);
+    *size = length - 1;
+    *offset = mark;
+    return text;
+}
+
+char *text_append(char *old, size_t *length, size_t *capacity, const char *more) {
+    const size_t n = strlen(more);
+    while (*length + n + 1 > *capacity) {
+        *capacity = *capacity * 2 + 256;
+        old = realloc(old, *capacity);
+        assert_non_null(old);
+    }
+    memcpy(old + *length, more, n + 1);
+    *length += n;
+    return old;
 }
 
 void test_support__not_compiled(void **state) {

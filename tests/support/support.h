@@ -1,6 +1,6 @@
 /*
- * support.h - what the tests of the core share: seeded random numbers, models (lists of things that can be emitted again, in
- * either order), guarded blocks, and stages (a scene with its spaces in an arena between guard bytes).
+ * support.h - what the tests share: seeded random numbers, models (lists of things that can be emitted again, in either
+ * order), guarded blocks, stages (a scene with its spaces in an arena between guard bytes), and inputs for readers.
  *
  * Every random test takes its seed from seed_of, prints it when it fails, and can be run with others: ASET_TEST_SEED=7.
  */
@@ -169,6 +169,35 @@ void expected_box(const aset_space *space, uint32_t object, int32_t low[3], int3
 bool expected_marked(const int32_t low[3], const int32_t high[3], const int32_t voxel[3], uint32_t face);
 /* The dense number of a cell as the space keeps it, UINT32_MAX if it is empty. */
 uint32_t cell_number(const aset_space *space, const int32_t voxel[3], uint32_t face);
+
+/* --- inputs for readers --- */
+
+typedef struct byte_source {
+    const char *bytes;
+    size_t size, at, chunk;
+    size_t fail_at; /* the callback fails instead of giving the byte of this number */
+    bool ended;
+} byte_source;
+
+/* The sizes of the pieces in which every input is given. */
+extern const size_t chunks[4];
+
+byte_source source_of(const char *bytes, size_t size, size_t chunk);
+/* An aset_read; context is a byte_source. Asserts that nobody asks again after the end. */
+ptrdiff_t give(void *context, void *buffer, size_t size);
+
+typedef struct bad_case {
+    const char *text; /* '@' stands before the byte that the report has to name, and is not part of the input */
+    uint32_t line;
+    aset_status status;
+    const char *token, *what; /* what: a part of the sentence */
+} bad_case;
+
+/* The input without its mark, to be freed, its size, and where the mark stood. */
+char *bad_input(const bad_case *bad, size_t *size, size_t *offset);
+
+/* Text that grows: the block (old may be NULL, with length and capacity 0) with more behind what is in it. */
+char *text_append(char *old, size_t *length, size_t *capacity, const char *more);
 
 /* For compilations without what a file is about. */
 void test_support__not_compiled(void **state);
