@@ -45,6 +45,8 @@ SHARED := $(BUILD)/libaset.so.$(VERSION)
 all: $(ARCHIVES) $(SHARED) $(BUILD)/aset examples ## build everything: libraries, tool, examples
 
 $(BUILD)/obj/tools/%.o: EXTRA = $(POSIX) $(PNG_CFLAGS)
+# GCC 12 fuses a * b + c in what it vectorizes there, whatever -ffp-contract says, where the machine can.
+$(BUILD)/obj/lib/procedural/%.o $(BUILD)/pic/lib/procedural/%.o: EXTRA = -fno-tree-slp-vectorize
 $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)
 	$(call say,CC)
@@ -52,7 +54,7 @@ $(BUILD)/obj/%.o: %.c
 $(BUILD)/pic/%.o: %.c
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) -fPIC -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) $(EXTRA) -fPIC -MMD -MP -c $< -o $@
 
 $(CORE_A): $(call objects,$(CORE),obj)
 $(LOAD_A): $(call objects,$(LOAD),obj)
@@ -97,6 +99,11 @@ $(BUILD)/tests/%: tests/%.c $(wildcard tests/support/*) $(TOOL_TESTABLE) $(ARCHI
 	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(CMOCKA_CFLAGS) -Itests -Itools -MMD -MP -o $@ $< \
 	  $(wildcard tests/support/*.c) $(TOOL_TESTABLE) $(ARCHIVES) $(CMOCKA_LIBS) $(PNG_LIBS) -lpthread -lm
 
+$(BUILD)/tests/determinism: tests/determinism.c $(ARCHIVES)
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(CPPFLAGS) $(filter-out -Ilib,$(STRICT)) $(CFLAGS) -o $@ $< $(PROCEDURAL_A) $(LOAD_A) $(CORE_A) -lm
+
 # Public headers only, so no -Ilib.
 $(BUILD)/tests/bench: tests/bench.c tests/bench_common.h $(ARCHIVES)
 	@mkdir -p $(@D)
@@ -112,16 +119,24 @@ $(BUILD)/tests/bench_peers $(BUILD)/tests/bench_drafts: $(BUILD)/tests/%: tests/
 	$(Q)if [ "$(EMBREE)" = yes ]; then with="-DBENCH_EMBREE=1" lib="-lembree3"; fi; \
 	  $(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $$with -o $@ $< $(PROCEDURAL_A) $(CORE_A) $$lib -lm
 
-test: $(addprefix $(BUILD)/tests/,$(TESTS) convert) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
+test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
 	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
 	  echo "== models.sh"; bash tests/models.sh $(BUILD)/aset $(BUILD)/tests/convert || failed="$$failed models.sh"; \
 	  echo "== bake.sh"; bash tests/bake.sh $(BUILD)/aset $(BUILD)/examples/flash "$(CC)" || failed="$$failed bake.sh"; \
+	  echo "== determinism.sh"; bash tests/determinism.sh quick $(BUILD)/tests/determinism || failed="$$failed determinism.sh"; \
 	  echo "== plan.sh"; bash tests/plan.sh $(BUILD)/aset "$(CC)" || failed="$$failed plan.sh"; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi; echo "all tests passed"
 
 test-long: $(BUILD)/aset ## every method against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)
 	bash tests/long.sh $(BUILD)/aset $(BUILD)/long
+
+determinism: $(BUILD)/aset ## golden hashes of pictures and counts, for every compiler and machine that can be built and run here
+	bash tests/determinism.sh all $(BUILD)/aset $(BUILD)/determinism
+
+fuzz: SECONDS ?= 60
+fuzz: ## every reader, the draft, the scene and the tracer under a fuzzer, for SECONDS each (60); wants clang
+	@CC="$(CC)" bash tests/fuzz.sh $(SECONDS) $(BUILD)/fuzz
 
 test-sanitize: ## the tests once more with the address and undefined-behaviour sanitizers
 	$(MAKE) BUILD=$(BUILD)/sanitize CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all" test
@@ -227,6 +242,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

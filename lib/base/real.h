@@ -12,6 +12,20 @@
 #include <float.h>
 #include <math.h>
 
+/*
+ * The promise needs every operation rounded to its own type: not the x87's registers (FLT_EVAL_METHOD 2), nor float computed
+ * in double (1: GCC for s390x with -std=c99, cured by -fexcess-precision=fast), nor what the compiler cannot tell (below 0).
+ */
+#ifdef FLT_EVAL_METHOD
+#if FLT_EVAL_METHOD < 0 || FLT_EVAL_METHOD == 2 || (FLT_EVAL_METHOD == 1 && ASET_REAL_BITS == 32)
+#error "arithmetic in more than the type's precision: use SSE2 (-msse2 -mfpmath=sse), or -fexcess-precision=fast"
+#endif
+#endif
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(__ASSOCIATIVE_MATH__) || \
+    defined(__RECIPROCAL_MATH__)
+#error "libaset is not correct with -ffast-math or its parts: NaN, infinity and the order of operations matter"
+#endif
+
 #define R(x) ((aset_real)(x))
 
 #if ASET_REAL_BITS == 32

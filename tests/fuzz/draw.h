@@ -50,14 +50,33 @@ static inline bool finite_vec(aset_vec3 v) {
     return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
 }
 
+/* Without rounding and overflow in the way: a ray in between may be refused or not. */
 static inline bool usable_ray(const aset_ray *ray) {
     aset_vec3 d = ray->direction;
-    aset_real length = (aset_real)sqrt((double)(d.x * d.x + d.y * d.y + d.z * d.z));
-    return finite_vec(ray->origin) && finite_vec(d) && isfinite(length) && length > 0 && ray->t_max == ray->t_max;
+    double length = sqrt((double)d.x * (double)d.x + (double)d.y * (double)d.y + (double)d.z * (double)d.z);
+    return finite_vec(ray->origin) && length > 1e-37 && length < 1e37 && ray->t_max == ray->t_max;
 }
 
+static inline bool broken_ray(const aset_ray *ray) {
+    aset_vec3 d = ray->direction;
+    bool none = d.x == 0 && d.y == 0 && d.z == 0;
+    return none || !finite_vec(ray->origin) || !finite_vec(d) || ray->t_max != ray->t_max;
+}
+
+static inline void check_answer(aset_status status, const aset_ray *ray) {
+    require(status == ASET_OK || (status == ASET_ERR_ARGUMENT && !usable_ray(ray)));
+    require(status != ASET_OK || !broken_ray(ray));
+}
+
+/* t is a distance by the direction's length, so from a long direction it may come out as 0. */
 static inline void check_hit(const aset_tracer *tracer, const aset_hit *hit, const aset_ray *ray) {
-    require(hit->t > 0 || (hit->t == 0 && !(ray->t_max > (aset_real)1e-30))); /* t / length may become 0 */
+    aset_vec3 d = ray->direction;
+    bool is_long = fabs((double)d.x) + fabs((double)d.y) + fabs((double)d.z) > 1e10;
+    if (!(hit->t > 0 || (hit->t == 0 && is_long))) {
+        fprintf(stderr, "t %g, object %u, from %g %g %g along %g %g %g\n", (double)hit->t, (unsigned)hit->object,
+                (double)ray->origin.x, (double)ray->origin.y, (double)ray->origin.z, (double)d.x, (double)d.y, (double)d.z);
+    }
+    require(hit->t > 0 || (hit->t == 0 && is_long));
     require(hit->object == ASET_NO_OBJECT || hit->object < tracer->scene->counts.objects);
 }
 
@@ -82,7 +101,7 @@ static inline void shoot_draft(const aset_tracer *tracer, const aset_draft *d) {
         ray.t_max = i % 3 == 0 ? 1 : (aset_real)INFINITY;
         aset_status status = aset_closest_hit(&found, &hit, tracer, &ray, true, NULL);
         require(aset_any_hit(&any, tracer, &ray, true, NULL) == status);
-        require(status == (usable_ray(&ray) ? ASET_OK : ASET_ERR_ARGUMENT));
+        check_answer(status, &ray);
         if (found && hit.object == ASET_NO_OBJECT) {
             require(hit.cell < d->n_facets);
             (void)aset_draft_texture(d, hit.cell);

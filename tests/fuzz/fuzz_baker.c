@@ -1,6 +1,6 @@
 /*
- * fuzz_baker.c - garbage through the baker in little memory, and its words opened and drawn. First four bytes: memory, two for the
- * divisions, choices; then entities as fuzz.h reads them.
+ * fuzz_baker.c - garbage through the baker in little memory, its words opened and drawn. First four bytes: memory, two for
+ * the divisions, choices; then entities as fuzz.h reads them.
  */
 #include "draw.h"
 
@@ -55,7 +55,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         bytes all = {data + HEAD, data + size};
         aset_sink sink = aset_baker_sink(baker);
         require(pass < PASSES_MAX);
-        (void)put_entities(all, &sink, ENTITIES_MAX, &tame, false);
+        (void)put_entities(all, &sink, ENTITIES_MAX, &tame);
         status = aset_baker_pass(baker, &again);
         require(status == ASET_OK || !again);
     }

@@ -1,6 +1,6 @@
 /*
- * fuzz_draft.c - opening a draft, and rays through what was opened. First byte: whether mark, version, length and check sum are
- * put right first, so that what lies behind them is reached; the stage's memory; the rest: the words.
+ * fuzz_draft.c - opening a draft, and rays through what was opened. First byte: whether mark, version, length and check sum
+ * are put right first, so that what lies behind them is reached; the stage's memory; the rest: the words.
  */
 #include "draw.h"
 

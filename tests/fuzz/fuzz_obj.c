@@ -1,7 +1,7 @@
 /*
  * fuzz_obj.c - the reader of OBJ and of material libraries. First byte: pieces, failing reads, smooth; second and third: the
- * vertex store's bytes, with a spill file or without, and when that fails; fourth: how many named materials are kept; fifth and
- * sixth: bytes of the OBJ. What is behind them is the library, whatever name is asked for that is not "no".
+ * vertex store's bytes, with a spill file or without, and when that fails; fourth: how many named materials are kept; fifth
+ * and sixth: bytes of the OBJ. What is behind them is the library, whatever name is asked for that is not "no".
  */
 #include "fuzz.h"
 

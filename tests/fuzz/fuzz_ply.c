@@ -1,6 +1,6 @@
 /*
- * fuzz_ply.c - the reader of PLY. First byte: pieces, failing reads, smooth, whether the size is known; second and third: the
- * vertex store's bytes, with a spill file or without, and when that fails; the rest: the file.
+ * fuzz_ply.c - the reader of PLY. First byte: pieces, failing reads, smooth, whether the size is known; second and third:
+ * the vertex store's bytes, with a spill file or without, and when that fails; the rest: the file.
  */
 #include "fuzz.h"
 

@@ -1,5 +1,5 @@
 /*
- * fuzz_scene.c - garbage geometry through the scene builder, every method and the tracer. First three bytes: bytes of the arena of
+ * fuzz_scene.c - garbage geometry through the scene builder, every method and the tracer. First three bytes: the arena of
  * the spaces, divisions, where rays come from; then entities as fuzz.h reads them; rays are made of the last bytes.
  */
 #include "draw.h"
@@ -55,7 +55,7 @@ static void shoot(const aset_tracer *tracer, const aset_ray *rays, answer *answe
         bool any = false;
         memset(&a, 0, sizeof a);
         aset_status status = aset_closest_hit(&a.found, &a.hit, tracer, rays + i, false, NULL);
-        require(status == (usable_ray(rays + i) ? ASET_OK : ASET_ERR_ARGUMENT));
+        check_answer(status, rays + i);
         require(aset_any_hit(&any, tracer, rays + i, false, NULL) == status);
         require(any == a.found);
         if (a.found) {
@@ -75,7 +75,7 @@ static void check_colours(const aset_tracer *tracer, const aset_ray *rays, bool 
     aset_arena arena = open_arena(ASET_BYTES_SCRATCH(DRAW_DEPTH));
     aset_scratch scratch;
     require(aset_scratch_init(&scratch, DRAW_DEPTH, &arena) == ASET_OK);
-    for (uint32_t i = 0; i < RAYS; i += 4) {
+    for (uint32_t i = 0; i < RAYS; i += 9) {
         aset_colour c = {0, 0, 0};
         aset_status status = aset_ray_colour(&c, tracer, rays + i, &scratch, NULL);
         require(status == ASET_OK || status == ASET_ERR_ARGUMENT);
@@ -95,11 +95,11 @@ static void approximate(aset_tracer *tracer, const aset_space *space, const aset
     }
     tracer->summary = &summary;
     tracer->approx_kinds = ASET_ALL_KINDS;
-    for (uint32_t i = 0; i < RAYS; i++) {
+    for (uint32_t i = 0; i < RAYS; i += 3) {
         aset_hit hit;
         bool found = false, any = false;
         status = aset_closest_hit(&found, &hit, tracer, rays + i, true, NULL);
-        require(status == (usable_ray(rays + i) ? ASET_OK : ASET_ERR_ARGUMENT));
+        check_answer(status, rays + i);
         require(aset_any_hit(&any, tracer, rays + i, true, NULL) == status && any == found);
         if (found) {
             check_hit(tracer, &hit, rays + i);
@@ -119,7 +119,7 @@ static aset_space_options options_of(uint32_t choice) {
     aset_space_options options;
     memset(&options, 0, sizeof options);
     for (int a = 0; a < 3 && choice % 5 != 4; a++) {
-        options.divisions[a] = 1 + (choice >> (2 * a)) % 4 * (a == 0 ? 3 : 5);
+        options.divisions[a] = 1 + (choice >> (2 * a)) % 4 * (a == 0 ? 3 : 2);
     }
     options.depth = 1 + choice % 4;
     options.leaf = choice % 3;
@@ -154,7 +154,7 @@ static void trace_all(const aset_scene *scene, const uint8_t *head, bytes last, 
             shoot(&tracer, rays, answers, m == 0);
             approximate(&tracer, &space, rays, tame, &arena);
             check_colours(&tracer, rays, tame);
-            if (scene->has_view) {
+            if (scene->has_view && m == head[2] % 7u) { /* a picture costs as much as all the rest */
                 draw_view(&tracer, &scene->view);
             }
         }
@@ -172,14 +172,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     bytes all = {data + HEAD, data + size};
     bytes last = {data + size - (size > 100 ? 100 : size), data + size};
     aset_sink sink = aset_counter_sink(&counter);
-    uint32_t counted = put_entities(all, &sink, ENTITIES_MAX, &tame, false);
+    uint32_t counted = put_entities(all, &sink, ENTITIES_MAX, &tame);
     size_t need = ASET_BYTES_SCENE(counter.counts.objects, counter.counts.coordinates, counter.counts.materials,
                                    counter.counts.lights);
     aset_arena arena = open_arena(need);
     require(aset_scene_init(&scene, &arena, &counter.counts) == ASET_OK);
     sink = aset_scene_sink(&scene);
-    uint32_t built = put_entities(all, &sink, ENTITIES_MAX, &tame, false);
-    require(memcmp(&scene.counts, &counter.counts, sizeof scene.counts) == 0 && built == counted);
+    uint32_t built = put_entities(all, &sink, ENTITIES_MAX, &tame);
+    require_same_counts(&scene.counts, &counter.counts);
+    require(built == counted);
     if (scene.counts.objects > 0) {
         trace_all(&scene, data, last, tame);
     }

@@ -1,4 +1,7 @@
-/* fuzz_stl.c - the reader of STL. First byte: pieces, failing reads, whether the size is known, and truly; the rest: the file. */
+/*
+ * fuzz_stl.c - the reader of STL. First byte: pieces, failing reads, whether the size is known, and truly; the rest: the
+ * file.
+ */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
