@@ -175,7 +175,7 @@ static void test_baker__passes_do_not_matter(void **state) {
         }
         options.bytes = ROOM - 65536;
         bake_model(&whole, &m, &options);
-        for (size_t bytes = 1 << 19; bytes > 2000; bytes -= bytes / 5) {
+        for (size_t bytes = 1 << 19; bytes > 2000; bytes -= bytes / 3) {
             guarded memory = guarded_open(ROOM);
             aset_arena arena;
             aset_draft draft;
@@ -631,7 +631,7 @@ static aset_status noise_emit(const aset_sink *sink, const void *context) {
 
 static void test_baker__noise(void **state) {
     (void)state;
-    const size_t rooms[] = {8000000, 3000000, 1500000, 700000};
+    const size_t rooms[] = {8000000, 1500000};
     for (size_t i = 0; i < COUNT_OF(rooms); i++) {
         uint64_t seed = seed_of(700);
         aset_bake_options options = options_of(40, 30, 20);
