@@ -4,43 +4,21 @@
 #
 # As tool.sh: one line for each case, each in a folder of its own, exit status 1 if any failed.
 set -u
-export LC_ALL=C
-unset POSIXLY_CORRECT
 
 if [ $# -lt 3 ] || [ ! -x "$1" ] || [ ! -x "$2" ]; then
     echo "usage: bash tests/bake.sh build/aset build/examples/flash CC [PATTERN]" >&2
     exit 1
 fi
-aset=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
+aset=$1
 flash=$(cd "$(dirname "$2")" && pwd)/$(basename "$2")
 cc=$3
 pattern=${4:-*}
 project=$PWD
-top=$(mktemp -d "${TMPDIR:-/tmp}/aset-bake.XXXXXX") || exit 1
-trap 'rm -rf "$top"' EXIT
-trap 'exit 1' HUP INT TERM
-out=$top/out err=$top/err why=$top/why noise=$top/noise scenes=$top/scenes
-n_passed=0 n_failed=0
+suite=bake
+. "$(dirname "$0")/support/cases.sh"
 draft_words="--approx all --approx-depth 0 --cells plane"
-ulimit -S -t 60
 
 # ---- checks ----
-
-fail() {
-    printf '%s\n' "$*" >"$why"
-    exit 1
-}
-
-tool() {
-    status=0
-    "$aset" "$@" >"$out" 2>"$err" </dev/null || status=$?
-}
-
-works() {
-    tool "$@"
-    [ $status -eq 0 ] || fail "aset $*: status $status: $(head -n 1 "$err")"
-    [ ! -s "$err" ] || fail "aset $*: done, but it says: $(head -n 1 "$err")"
-}
 
 # Fails with this status and one line that begins so.
 refuses() {
@@ -53,10 +31,6 @@ refuses() {
     "$start"?*) ;;
     *) fail "aset $*: says $(cat "$err"), expected $start..." ;;
     esac
-}
-
-same() {
-    cmp -s "$1" "$2" || fail "$3"
 }
 
 lines() {
@@ -404,22 +378,5 @@ memory_decides_passes_only bake_refuses broken_drafts_are_refused joined_pieces_
 thumbnails_of_a_folder broken_models_are_listed thumb_refuses progress_of_thumbnails
 flash_draws_what_render_draws flash_is_limited_when_compiled
 "
-for name in $cases; do
-    case $name in
-    $pattern) ;;
-    *) continue ;;
-    esac
-    rm -f "$why" "$top/skipped"
-    mkdir "$top/$name"
-    if (cd "$top/$name" && "$name") >"$noise" 2>&1; then
-        echo "ok $name$([ ! -e "$top/skipped" ] || echo " # skipped: $(cat "$top/skipped")")"
-        n_passed=$((n_passed + 1))
-    else
-        [ -s "$why" ] || head -n 1 "$noise" >"$why"
-        echo "not ok $name: $(tr '\n' ' ' <"$why")"
-        n_failed=$((n_failed + 1))
-    fi
-    rm -rf "${top:?}/$name"
-done
-echo "$n_passed passed, $n_failed failed"
-[ $n_failed -eq 0 ]
+# shellcheck disable=SC2086
+run_cases $cases

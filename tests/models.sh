@@ -4,41 +4,19 @@
 # As tool.sh: one line for each case, `ok NAME` or `not ok NAME: why`; each case is a function that runs in an empty folder
 # of its own. The cases make their models themselves; with a folder of further models, ../shared/models, those are drawn too.
 set -u
-export LC_ALL=C
-unset POSIXLY_CORRECT
 
 if [ $# -lt 2 ] || [ ! -x "$1" ] || [ ! -x "$2" ]; then
     echo "usage: bash tests/models.sh build/aset build/tests/convert [PATTERN]" >&2
     exit 1
 fi
-aset=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
+aset=$1
 convert=$(cd "$(dirname "$2")" && pwd)/$(basename "$2")
 pattern=${3:-*}
 more=$(cd "$(dirname "$0")/.." && pwd)/../shared/models
-top=$(mktemp -d "${TMPDIR:-/tmp}/aset-models.XXXXXX") || exit 1
-trap 'rm -rf "$top"' EXIT
-trap 'exit 1' HUP INT TERM
-out=$top/out err=$top/err why=$top/why noise=$top/noise
-n_passed=0 n_failed=0
-ulimit -S -t 60
+suite=models
+. "$(dirname "$0")/support/cases.sh"
 
 # ---- checks ----
-
-fail() {
-    printf '%s\n' "$*" >"$why"
-    exit 1
-}
-
-tool() {
-    status=0
-    "$aset" "$@" >"$out" 2>"$err" </dev/null || status=$?
-}
-
-works() {
-    tool "$@"
-    [ $status -eq 0 ] || fail "aset $*: status $status: $(head -n 1 "$err")"
-    [ ! -s "$err" ] || fail "aset $*: done, but it says: $(head -n 1 "$err")"
-}
 
 # Done, with exactly this line on standard error.
 works_and_says() {
@@ -60,10 +38,6 @@ refuses() {
     "$start"*) ;;
     *) fail "aset $*: the line does not begin with '$start': $(cat "$err")" ;;
     esac
-}
-
-same() {
-    cmp -s "$1" "$2" || fail "$3"
 }
 
 # A bumpy ball of $1 rings, as an OBJ of polygons, with a normal at each vertex. Its numbers are whole parts of 4096, which
@@ -304,22 +278,5 @@ cases="
 all_formats all_formats_of_further_models short_form_is_a_draft little_memory many_vertices axes_and_ground the_view_fits
 transparent colours bad_parts_are_counted bad_files odd_models wrong_words info_of_a_model times_are_told_apart
 "
-for name in $cases; do
-    case $name in
-    $pattern) ;;
-    *) continue ;;
-    esac
-    rm -f "$why" "$top/skipped"
-    mkdir "$top/$name"
-    if (cd "$top/$name" && "$name") >"$noise" 2>&1; then
-        echo "ok $name$([ ! -e "$top/skipped" ] || echo " # skipped: $(cat "$top/skipped")")"
-        n_passed=$((n_passed + 1))
-    else
-        [ -s "$why" ] || head -n 1 "$noise" >"$why"
-        echo "not ok $name: $(tr '\n' ' ' <"$why")"
-        n_failed=$((n_failed + 1))
-    fi
-    rm -rf "${top:?}/$name"
-done
-echo "$n_passed passed, $n_failed failed"
-[ $n_failed -eq 0 ]
+# shellcheck disable=SC2086
+run_cases $cases

@@ -6,43 +6,17 @@
 # of its own, so that a look at the folder finds every file that the tool leaves. The folders lie in one that is removed
 # at the end.
 set -u
-export LC_ALL=C
-unset POSIXLY_CORRECT
 
 if [ $# -lt 1 ] || [ ! -x "$1" ]; then
     echo "usage: bash tests/tool.sh build/aset [PATTERN]" >&2
     exit 1
 fi
-aset=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
+aset=$1
 pattern=${2:-*}
-top=$(mktemp -d "${TMPDIR:-/tmp}/aset-tool.XXXXXX") || exit 1
-trap 'rm -rf "$top"' EXIT
-trap 'exit 1' HUP INT TERM
-# the files of the checks themselves, outside the folders of the cases
-out=$top/out err=$top/err why=$top/why noise=$top/noise scenes=$top/scenes
-n_passed=0 n_failed=0
-# a tool that runs on for ever is ended, and its case fails
-ulimit -S -t 60
+suite=tool
+. "$(dirname "$0")/support/cases.sh"
 
 # ---- checks ----
-
-fail() {
-    printf '%s\n' "$*" >"$why"
-    exit 1
-}
-
-# Runs the tool with these words; leaves status, $out and $err.
-tool() {
-    status=0
-    "$aset" "$@" >"$out" 2>"$err" </dev/null || status=$?
-}
-
-# It does its work and has nothing to say on standard error, which is no terminal here.
-works() {
-    tool "$@"
-    [ $status -eq 0 ] || fail "aset $*: status $status: $(head -n 1 "$err")"
-    [ ! -s "$err" ] || fail "aset $*: done, but it says: $(head -n 1 "$err")"
-}
 
 # The run before ended with this status and one line on standard error that begins so.
 refused() {
@@ -62,10 +36,6 @@ wrong_words() {
     (refused 2 "aset: ") || fail "aset $*: $(cat "$why")"
     [ ! -s "$out" ] || fail "aset $*: standard output is not empty"
     [ -z "$(ls -A)" ] || fail "aset $*: left $(ls -A)"
-}
-
-same() {
-    cmp -s "$1" "$2" || fail "$3"
 }
 
 # Two PPM of one width (in pixels), row by row.
@@ -1133,22 +1103,5 @@ scene_into_render compare_figures_and_status compare_refuses tables_repeat_their
 full_disk file_size_limit closed_pipe outputs_that_cannot_be old_output interrupted progress_bar
 trade_table trade_best_marks trade_says_what_render_says trade_of_a_model trade_resumes trade_page trade_refuses
 "
-for name in $cases; do
-    case $name in
-    $pattern) ;;
-    *) continue ;;
-    esac
-    rm -f "$why" "$top/skipped"
-    mkdir "$top/$name"
-    if (cd "$top/$name" && "$name") >"$noise" 2>&1; then
-        echo "ok $name$([ ! -e "$top/skipped" ] || echo " # skipped: $(cat "$top/skipped")")"
-        n_passed=$((n_passed + 1))
-    else
-        [ -s "$why" ] || head -n 1 "$noise" >"$why"
-        echo "not ok $name: $(tr '\n' ' ' <"$why")"
-        n_failed=$((n_failed + 1))
-    fi
-    rm -rf "${top:?}/$name"
-done
-echo "$n_passed passed, $n_failed failed"
-[ $n_failed -eq 0 ]
+# shellcheck disable=SC2086
+run_cases $cases
