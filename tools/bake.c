@@ -108,22 +108,15 @@ static bool parse_name(request *r) {
 /* ---- baking ---- */
 
 static aset_status bake_passes(baked *b, const request *r, tool_source *source, bool *told) {
-    aset_baker baker;
+    tool_baking baking;
     aset_bake_options options;
-    bool again = true;
     memset(&options, 0, sizeof options);
     memcpy(options.divisions, r->settings.grid, sizeof options.divisions);
     options.bytes = r->has_memory ? b->arena.size : 0; /* what was granted saves readings */
-    aset_status status = aset_baker_init(&baker, &b->arena, &options);
-    while (status == ASET_OK && again) {
-        tool_batch batch;
-        aset_sink sink = tool_batch_sink(&batch, NULL, &baker);
-        *told = !tool_source_read(source, &sink);
-        status = *told ? ASET_ERR_SYNTAX : tool_batch_end(&batch);
-        status = status == ASET_OK ? aset_baker_pass(&baker, &again) : status;
-    }
-    status = status == ASET_OK ? aset_baker_finish(&b->draft, &baker) : status;
-    b->report = baker.report;
+    aset_status status = tool_bake(&baking, source, &options, &b->arena);
+    *told = baking.told;
+    b->draft = baking.draft;
+    b->report = baking.report;
     return status;
 }
 

@@ -253,3 +253,34 @@ aset_status tool_batch_end(tool_batch *batch) {
     flush(batch);
     return batch->status;
 }
+
+/* One reading into the baker. */
+static aset_status bake_pass(tool_baking *b, tool_source *source, aset_baker *baker, bool *again) {
+    tool_batch batch;
+    aset_sink sink = tool_batch_sink(&batch, NULL, baker);
+    double start = tool_seconds();
+    b->told = !tool_source_read(source, &sink);
+    aset_status status = b->told ? ASET_ERR_SYNTAX : tool_batch_end(&batch);
+    b->load_s += tool_seconds() - start - batch.seconds;
+    start = tool_seconds();
+    if (status == ASET_OK) {
+        status = aset_baker_pass(baker, again);
+    }
+    b->build_s += batch.seconds + tool_seconds() - start;
+    return status;
+}
+
+aset_status tool_bake(tool_baking *baking, tool_source *source, const aset_bake_options *options, aset_arena *arena) {
+    aset_baker baker;
+    bool again = true;
+    memset(baking, 0, sizeof *baking);
+    aset_status status = aset_baker_init(&baker, arena, options);
+    while (status == ASET_OK && again) {
+        status = bake_pass(baking, source, &baker, &again);
+    }
+    double start = tool_seconds();
+    status = status == ASET_OK ? aset_baker_finish(&baking->draft, &baker) : status;
+    baking->build_s += tool_seconds() - start;
+    baking->report = baker.report;
+    return status;
+}

@@ -97,26 +97,19 @@ static aset_status bake(aset_draft *draft, aset_arena *arena, void **block, aset
     size_t size = n[0] == 0 ? 1u << 20 : ASET_BYTES_BAKE(n[0], n[1], n[2]) + 65536u;
     aset_status status = ASET_ERR_NOMEM;
     for (*block = NULL; status == ASET_ERR_NOMEM && size < SIZE_MAX / 2; size += arena->missing) {
-        aset_baker baker;
-        tool_batch batch;
-        bool again = true;
+        tool_baking baking;
         free(*block);
         *block = malloc(size);
         if (*block == NULL) {
             return ASET_ERR_NOMEM;
         }
         status = aset_arena_init(arena, *block, size);
-        status = status == ASET_OK ? aset_baker_init(&baker, arena, options) : status;
-        while (status == ASET_OK && again) {
-            aset_sink sink = tool_batch_sink(&batch, NULL, &baker);
-            if (!tool_source_read(source, &sink)) {
-                return ASET_ERR_READ;
-            }
-            status = tool_batch_end(&batch);
-            status = status == ASET_OK ? aset_baker_pass(&baker, &again) : status;
+        if (status == ASET_OK) {
+            status = tool_bake(&baking, source, options, arena);
+            *draft = baking.draft;
+            *report = baking.report;
+            status = baking.told ? ASET_ERR_READ : status;
         }
-        status = status == ASET_OK ? aset_baker_finish(draft, &baker) : status;
-        *report = baker.report;
     }
     return status;
 }
@@ -127,6 +120,8 @@ static bool print_draft(tool_source *source, const aset_space_options *options) 
     aset_bake_options bake_options;
     aset_bake_report report;
     void *block;
+    memset(&draft, 0, sizeof draft);
+    memset(&report, 0, sizeof report);
     memset(&bake_options, 0, sizeof bake_options);
     memcpy(bake_options.divisions, options->divisions, sizeof bake_options.divisions);
     aset_status status = bake(&draft, &arena, &block, &report, source, &bake_options);

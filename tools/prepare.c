@@ -114,36 +114,17 @@ static void choose_tracer(prepared *p, const settings *s) {
     t->spd_rules = s->spd_rules;
 }
 
-/* One reading into the baker: reading and baking are timed apart. *told: the source has failed and said so. */
-static aset_status bake_pass(prepared *p, tool_source *source, aset_baker *baker, bool *again, bool *told) {
-    tool_batch batch;
-    aset_sink sink = tool_batch_sink(&batch, NULL, baker);
-    double start = tool_seconds();
-    *told = !tool_source_read(source, &sink);
-    aset_status status = *told ? ASET_ERR_SYNTAX : tool_batch_end(&batch);
-    p->load_s += tool_seconds() - start - batch.seconds;
-    start = tool_seconds();
-    if (status == ASET_OK) {
-        status = aset_baker_pass(baker, again);
-    }
-    p->build_s += batch.seconds + tool_seconds() - start;
-    return status;
-}
-
 /* A draft of what the source holds, in the arena's free bytes. */
 static aset_status bake(prepared *p, const settings *s, tool_source *source, bool *told) {
-    aset_baker baker;
+    tool_baking baking;
     aset_bake_options options;
-    bool again = true;
     memset(&options, 0, sizeof options);
     memcpy(options.divisions, s->grid, sizeof options.divisions);
-    aset_status status = aset_baker_init(&baker, &p->arena, &options);
-    while (status == ASET_OK && again) {
-        status = bake_pass(p, source, &baker, &again, told);
-    }
-    double start = tool_seconds();
-    status = status == ASET_OK ? aset_baker_finish(&p->draft, &baker) : status;
-    p->build_s += tool_seconds() - start;
+    aset_status status = tool_bake(&baking, source, &options, &p->arena);
+    *told = baking.told;
+    p->draft = baking.draft;
+    p->load_s += baking.load_s;
+    p->build_s += baking.build_s;
     return status;
 }
 

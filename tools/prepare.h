@@ -116,6 +116,17 @@ aset_sink tool_batch_sink(tool_batch *batch, const aset_sink *target, aset_baker
 /* Hands over the rest. The target's first error, or ASET_OK. */
 aset_status tool_batch_end(tool_batch *batch);
 
+/* What a bake made and took. */
+typedef struct tool_baking {
+    aset_draft draft;
+    aset_bake_report report;
+    double load_s, build_s; /* reading and parsing; baking */
+    bool told;              /* the source has failed and said so */
+} tool_baking;
+
+/* Bakes what the source holds, in the arena's free bytes, with as many readings as that takes. */
+aset_status tool_bake(tool_baking *baking, tool_source *source, const aset_bake_options *options, aset_arena *arena);
+
 /* Every method the tool knows; ends with NULL. */
 extern const aset_method *const tool_methods[];
 const aset_method *tool_method_find(const char *name);
