@@ -14,6 +14,7 @@
 #include "space/bricks.h"
 #include "trace/camera.h"
 #include "trace/light.h"
+#include "scene/approach.h"
 #include "trace/query.h"
 #include "trace/shade.h"
 
@@ -179,7 +180,7 @@ static inline void fused_walk(fused *f, const aset_space *space, bool any) {
 
 static inline answer fused_query(const aset_tracer *tracer, const aset_ray *r, bool any, aset_statistics *statistics) {
     probe ray;
-    aset_real moved = query_ready(&ray, tracer->scene, r->origin, r->direction);
+    aset_real moved = approach_ready(&ray, tracer->scene, r->origin, r->direction);
     fused f = {tracer->scene, &ray, r->t_max - moved, r->t_max - moved, ASET_NO_OBJECT, 0, 0, 0, 0};
     fused_walk(&f, tracer->space, any);
     statistics->tests += f.tests;
@@ -368,7 +369,7 @@ static void stage_close(stage *s) {
 /* Does the ray hit this object within its bounds? */
 static bool really_hits(const aset_tracer *tracer, const aset_ray *r, uint32_t object) {
     probe ray;
-    aset_real end = r->t_max - query_ready(&ray, tracer->scene, r->origin, r->direction);
+    aset_real end = r->t_max - approach_ready(&ray, tracer->scene, r->origin, r->direction);
     return object_nearest(tracer->scene, object, &ray, end) < end;
 }
 

@@ -38,6 +38,44 @@ case "$build" in *sanitize*) flags="-fsanitize=address,undefined" ;; *double*) f
 if ! $cc -std=c99 $flags -Iinclude "$dir/user.c" "$core" -lm -o "$dir/user" 2>"$dir/log"; then
     echo "link: a program with the library's own switches does not link:"; cat "$dir/log"; bad=1
 fi
+# What a program does not name it does not link: archive members alone, no section is dropped.
+cat > "$dir/draft.c" <<'END'
+#include <aset/aset.h>
+int main(void) {
+    aset_arena arena = {0};
+    aset_draft draft;
+    aset_scratch scratch = {0};
+    aset_tracer tracer = {.draft = &draft, .scene = &draft.stage, .approx_kinds = ASET_ALL_KINDS};
+    aset_picture picture = {0};
+    return aset_draft_open(&draft, NULL, 0, &arena, NULL) +
+           aset_render_rows(&tracer, &draft.stage.view, &picture, 0, 0, &scratch, NULL);
+}
+END
+cat > "$dir/exact.c" <<'END'
+#include <aset/aset.h>
+int main(void) {
+    aset_arena arena = {0};
+    aset_scene scene;
+    aset_space space;
+    aset_scratch scratch = {0};
+    aset_tracer tracer = {.scene = &scene, .space = &space};
+    aset_picture picture = {0};
+    return aset_scene_init(&scene, &arena, NULL) + aset_space_build(&space, &scene, &aset_mset, NULL, &arena) +
+           aset_render_rows(&tracer, &scene.view, &picture, 0, 0, &scratch, NULL);
+}
+END
+without() { # program, what it must have, what it must not
+    # shellcheck disable=SC2086
+    $cc -std=c99 $flags -Iinclude "$dir/$1.c" "$core" -lm -o "$dir/$1"
+    symbols=$(nm "$dir/$1" | awk 'NF == 3 { print $3 }')
+    echo "$symbols" | grep -q "^$2\$" || { echo "link: a program for $1 links no $2"; bad=1; }
+    alien=$(echo "$symbols" | grep -E "^($3)" || true)
+    # shellcheck disable=SC2086
+    [ -z "$alien" ] || { echo "link: a program for $1 links" $alien; bad=1; }
+}
+without draft draft_answers 'exact_|visit_exact|aset_(space|summary|brute|set|mset|grid|octree|arts|excell|baker)|sides_|cells_|slices_|summary_|texture_|baker_|sheet_'
+without exact exact_answers 'draft_|aset_(draft|baker|summary)|facet_|summary_|texture_|baker_|sheet_'
+
 other=64
 case "$build" in *double*) other=32 ;; esac
 for switch in ASET_REAL_BITS=$other "ASET_WITH_POLYGONS=0 -DASET_WITH_PATCHES=0" ASET_WITH_PATCHES=0 ASET_WITH_SPHERES=0 \
@@ -52,5 +90,5 @@ for switch in ASET_REAL_BITS=$other "ASET_WITH_POLYGONS=0 -DASET_WITH_PATCHES=0"
         echo "link: -D$switch fails for another reason:"; cat "$dir/log"; bad=1
     fi
 done
-[ $bad = 0 ] && echo "link: the core asks for mem* and the square root only; other layout switches do not link"
+[ $bad = 0 ] && echo "link: the core asks for mem* and the square root only; other layout switches do not link; nobody links what it does not name"
 exit $bad

@@ -36,6 +36,7 @@ typedef struct aset_draft {
     const uint32_t *words; /* the whole draft: to be written to a file, or compiled in as a const array */
     size_t n_words;
     aset_scene stage;      /* background, view and lights as the source gave them, and the objects kept exact */
+    const struct aset_answers *answers;
     const uint32_t *map, *rank, *marks, *first, *starts, *facets, *surfaces, *footprints, *textures;
     uint32_t n[3], blocks[3];
     uint32_t n_blocks, n_facets, n_surfaces, n_footprints, n_textures;

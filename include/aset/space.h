@@ -184,6 +184,7 @@ typedef struct aset_large {
 
 typedef struct aset_space {
     const aset_method *method;
+    const struct aset_answers *answers; /* exact rays */
     const aset_scene *scene;
     aset_structure structure;
     aset_slices slices;

@@ -20,6 +20,7 @@ extern "C" {
  */
 typedef struct aset_summary {
     const aset_space *space;
+    const struct aset_answers *answers; /* private: approximate rays */
     aset_material *textures;
     uint64_t *of_cell; /* private: each cell's texture, packed to width bits */
     unsigned width;

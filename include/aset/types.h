@@ -21,6 +21,9 @@ typedef float aset_real;
 typedef double aset_real;
 #endif
 
+/* Private: what answers rays for a space, a summary or a draft. */
+struct aset_answers;
+
 /* What a call says. 0 is success; everything else is negative and leaves the objects it was given as they were. */
 typedef enum aset_status {
     ASET_OK = 0,

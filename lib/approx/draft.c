@@ -27,6 +27,7 @@ bool draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words) {
     uint64_t all = 1;
     bool fits = true;
     draft->words = words;
+    draft->answers = &draft_answers;
     draft->n_words = n_words;
     draft->column = 0;
     for (int a = 0; a < 3; a++) {

@@ -177,6 +177,9 @@ bool draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words);
 /* Gives the stage's entities to a sink. */
 aset_status draft_read_stage(const aset_draft *draft, const aset_sink *sink);
 
+/* Rays against a draft. */
+extern const struct aset_answers draft_answers;
+
 aset_material draft_material(const aset_draft *draft, uint32_t texture);
 
 uint32_t draft_checksum(const uint32_t *words, size_t n_words);

@@ -121,6 +121,7 @@ static aset_status list_textures(aset_summary *summary, const aset_space *space,
     size_t left = arena->size - arena->used, room = left / sizeof *summary->textures;
     memset(summary, 0, sizeof *summary);
     summary->space = space;
+    summary->answers = &summary_answers;
     summary->capacity = capacity > 0 ? capacity : aset_summary_capacity(space->scene);
     summary->textures = (aset_material *)(void *)(arena->block + arena->used);
     *bytes = ASET_BYTES_SUMMARY(space->cells.n_cells, summary->capacity);

@@ -6,6 +6,8 @@
 #include "base/bits.h"
 
 #if ASET_WITH_APPROXIMATION
+extern const struct aset_answers summary_answers;
+
 static inline const aset_material *summary_texture(const aset_summary *summary, uint32_t cell) {
     return summary->textures + bits_get(summary->of_cell, summary->width, cell);
 }

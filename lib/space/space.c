@@ -1,5 +1,6 @@
 /* space.c - measuring and building any space; the rule for automatic divisions. */
 #include "base/bits.h"
+#include "space/answers.h"
 #include "space/slices.h"
 #include "space/walk.h"
 
@@ -160,6 +161,7 @@ aset_status aset_space_build(aset_space *space, const aset_scene *scene, const a
     }
     memset(space, 0, sizeof *space);
     space->method = method;
+    space->answers = &exact_answers; /* here, so that a program without a space links none of it */
     space->scene = scene;
     memcpy(space->slices.n, size.divisions, sizeof size.divisions);
     method->build(space, &size, arena);

@@ -1,4 +1,4 @@
-/* query.h - one ray against a space, exact or approximate: the two consumers of the common walk. */
+/* query.h - one ray, exact or approximate, put to whoever answers it. */
 #ifndef ASET_TRACE_QUERY_H
 #define ASET_TRACE_QUERY_H
 
@@ -8,6 +8,7 @@
 #endif
 #include "base/vec.h"
 #include "scene/shape.h"
+#include "space/answers.h"
 
 #if ASET_WITH_DRAFTS
 #define QUERY_LAYERS_MAX (DRAFT_LAYERS_MAX + 1)
@@ -15,24 +16,8 @@
 #define QUERY_LAYERS_MAX 1
 #endif
 
-/* What a closest-hit query found. */
-typedef struct query_hit {
-    aset_real t;
-    aset_vec3 near;   /* where the ray was made to start, */
-    aset_real t_near; /* and t from there: the hit's point with the least rounding */
-    uint32_t object; /* exact; ASET_NO_OBJECT for a cell */
-    uint32_t cell;   /* approximate: dense number */
-    int face;        /* approximate: axis * 2, + 1 going down */
-    bool curtailed;  /* approximate: the ray was trapped, and hit nothing */
-    aset_real cover; /* the share of the ray that ends here: 1 unless a draft covers it in part */
-    const aset_scene *scene; /* of the object; NULL for a cell */
-} query_hit;
-
 /* Whether the tracer has what exact or approximate queries need. */
 bool query_can(const aset_tracer *tracer, bool approximate);
-
-/* Makes a ray of unit direction ready; from outside it is moved near the scene. By how much. */
-aset_real query_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction);
 
 /* direction: of unit length. False: nothing hit (or curtailed). */
 bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,

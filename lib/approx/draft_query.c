@@ -1,0 +1,107 @@
+/*
+ * draft_query.c - a draft's answers: the layers that its facets lay over a ray, and before them the objects that it keeps exact.
+ */
+#include "approx/draft_ray.h"
+#include "scene/approach.h"
+#include "space/answers.h"
+
+#if ASET_WITH_DRAFTS
+
+static draft_mode mode_of(const aset_tracer *tracer) {
+    return tracer->draft_sides ? DRAFT_SIDE : DRAFT_PLANE;
+}
+
+/* The nearest of the objects that the draft keeps exact; t_max if there is none before it. */
+static aset_real nearest_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                              aset_statistics *statistics) {
+    const aset_scene *stage = &draft->stage;
+    probe ray;
+    aset_real best = t_max;
+    if (stage->counts.objects == 0) {
+        return best;
+    }
+    aset_real moved = approach_ready(&ray, stage, origin, direction);
+    for (uint32_t i = 0; i < stage->counts.objects; i++) {
+        aset_real t = object_nearest(stage, i, &ray, best - moved);
+        statistics->tests++;
+        if (t + moved < best) {
+            statistics->test_hits++;
+            best = t + moved;
+            hit->object = i;
+            hit->t_near = t;
+        }
+    }
+    hit->near = probe_origin(&ray);
+    hit->t = best;
+    hit->scene = stage;
+    hit->by = &draft_answers;
+    hit->cell = 0;
+    hit->curtailed = false;
+    return best;
+}
+
+static uint32_t draft_meet(query_hit *layers, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                           aset_statistics *statistics) {
+    draft_layer met[DRAFT_LAYERS_MAX];
+    draft_counts counts;
+    query_hit kept;
+    aset_real end = nearest_kept(&kept, tracer->draft, origin, direction, t_max, statistics), left = 1;
+    uint32_t n = draft_layers(met, tracer->draft, mode_of(tracer), origin, direction, end, &counts);
+    statistics->cells_visited += counts.cells;
+    statistics->nonempty_visited += counts.nonempty;
+    statistics->approx_hits += n > 0;
+    for (uint32_t i = 0; i < n; i++) {
+        query_hit *hit = layers + i;
+        hit->t = hit->t_near = met[i].t;
+        hit->near = origin;
+        hit->object = ASET_NO_OBJECT;
+        hit->cell = met[i].facet;
+        hit->face = met[i].face;
+        hit->curtailed = false;
+        hit->cover = met[i].cover;
+        hit->scene = NULL;
+        hit->by = &draft_answers;
+        left -= met[i].cover;
+    }
+    if (end < t_max && left > 0) {
+        layers[n] = kept;
+        layers[n++].cover = left;
+    }
+    return n;
+}
+
+static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                      aset_statistics *statistics) {
+    draft_counts counts;
+    query_hit kept;
+    if (nearest_kept(&kept, tracer->draft, origin, direction, t_max, statistics) < t_max) {
+        return true;
+    }
+    bool blocked = draft_blocks(tracer->draft, mode_of(tracer), origin, direction, t_max, &counts);
+    statistics->cells_visited += counts.cells;
+    statistics->nonempty_visited += counts.nonempty;
+    statistics->approx_hits += blocked;
+    return blocked;
+}
+
+static void draft_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit) {
+    if (hit->object != ASET_NO_OBJECT) {
+        object_normals(hit->scene, hit->object, surface->point, &surface->normal, &surface->geometric);
+        surface->material = shape_of(hit->scene, hit->object).material;
+        return;
+    }
+    facet f = facet_read(tracer->draft, hit->cell);
+    surface->cell = hit->cell;
+    surface->normal = facet_normal(tracer->draft, &f);
+    surface->geometric = tracer->draft_sides ? answers_slice_normal(hit->face) : surface->normal;
+    *own = draft_material(tracer->draft, f.texture);
+    surface->material = own;
+}
+
+static aset_real clearance(const aset_tracer *tracer) {
+    return draft_clearance(tracer->draft);
+}
+
+const struct aset_answers draft_answers = {true, draft_meet, draft_any, draft_surface, clearance};
+
+#endif

@@ -1,0 +1,65 @@
+/*
+ * approach.c - a ray that starts away from the scene is first brought near it: from afar the rounding of its slice crossings
+ * would exceed the boxes' margins. All spaces see the same moved ray.
+ */
+#include "scene/approach.h"
+
+/* Where a ray from outside is made to start: this part of the scene's size before the box. */
+#define NEAR R(0.0625)
+#define APPROACHES 4
+
+/* The larger of an origin's distances to both sides of a box, on one axis. */
+static inline aset_real farther(aset_real low, aset_real high, aset_real origin) {
+    return real_max(high - origin, origin - low);
+}
+
+/* Narrows the ray's stay in a box by one axis, as probe_box does. False: it misses. */
+static inline bool narrow(const probe *ray, int a, aset_real low, aset_real high, aset_real *t_in, aset_real *t_out) {
+    aset_real origin = ray->origin[a], inverse = ray->inverse[a];
+    if (!ray->moves[a]) {
+        return origin >= low && origin <= high;
+    }
+    bool up = ray->direction[a] > 0;
+    *t_in = real_max(((up ? low : high) - origin) * inverse, *t_in);
+    *t_out = real_min(((up ? high : low) - origin) * inverse, *t_out);
+    return true;
+}
+
+/*
+ * How far the ray is from the scene's box: t at which it enters, 0 if it misses or has entered. The box is grown by more than any
+ * object's, and by the rounding of its sides' t from here: a ray that misses it is refused by the clamp of every object too.
+ */
+static aset_real distance_to(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real margin) {
+    const aset_real *o = ray->origin;
+    aset_real t_in = -REAL_INFINITY, t_out = REAL_INFINITY;
+    aset_real away = real_max(farther(low.x, high.x, o[0]), farther(low.y, high.y, o[1]));
+    away = real_max(away, farther(low.z, high.z, o[2]));
+    aset_real grown = 4 * margin + 4 * REAL_UNIT * away;
+    bool meets = narrow(ray, 0, low.x - grown, high.x + grown, &t_in, &t_out) &&
+                 narrow(ray, 1, low.y - grown, high.y + grown, &t_in, &t_out) &&
+                 narrow(ray, 2, low.z - grown, high.z + grown, &t_in, &t_out);
+    return meets && t_in <= t_out && t_in > 0 ? t_in : 0;
+}
+
+aset_real approach_move(probe *ray, const aset_scene *scene) {
+    if (scene->counts.objects == 0) {
+        return 0;
+    }
+    aset_real moved = 0, near = NEAR * vec_largest(vec_sub(scene->high, scene->low));
+    for (int i = 0; i < APPROACHES; i++) { /* from very far away the first move ends up somewhere near: so again */
+        aset_real step = distance_to(ray, scene->low, scene->high, scene->margin) - near;
+        if (!(step > 0)) {
+            break;
+        }
+        for (int a = 0; a < 3; a++) {
+            ray->origin[a] += step * ray->direction[a];
+        }
+        moved += step;
+    }
+    return moved;
+}
+
+aset_real approach_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
+    *ray = probe_make(origin, direction);
+    return approach_entered(scene, origin) ? 0 : approach_move(ray, scene);
+}
