@@ -4,7 +4,8 @@
  * camera, lights and shading formula; rounds are interleaved, and the ratio printed is the median of the rounds' own ratios.
  * Without Embree, ours alone.
  *
- *      bench_drafts [--rounds N] [--grid N] [--side N] [SIZE ...]      sizes of tetra, 4^SIZE triangles; default 9 11
+ *      bench_drafts [--rounds N] [--grid N] [--side N] [--tiles N] [SIZE ...]      sizes of tetra, 4^SIZE triangles; default
+ *                    9 11; tiles: of the reach, 0 for none
  */
 #include "bench_common.h"
 
@@ -19,7 +20,7 @@
 
 #if ASET_REAL_BITS == 32 && ASET_WITH_DRAFTS
 
-enum { ROUNDS_MAX = 99, ARENA_BYTES = 64 << 20 };
+enum { ROUNDS_MAX = 99, ARENA_BYTES = 64 << 20, BEAM_VOXELS = 2048 };
 
 /* A model of one material, as a sink takes it. */
 typedef struct model {
@@ -101,7 +102,7 @@ typedef struct turn {
 
 typedef struct contest {
     const model *m;
-    uint32_t side, grid;
+    uint32_t side, grid, tiles;
     void *block;
     uint8_t *ours, *theirs;
 } contest;
@@ -141,6 +142,17 @@ static bool draw_ours(turn *r, const contest *c) {
     memset(&tracer, 0, sizeof tracer);
     memset(&picture, 0, sizeof picture);
     memset(&counts, 0, sizeof counts);
+    aset_reach reach;
+    aset_beams beams;
+    if (c->tiles > 0) {
+        status = aset_reach_init(&reach, &draft, c->tiles, &arena);
+        status = status == ASET_OK ? aset_beams_init(&beams, BEAM_VOXELS, &arena) : status;
+        tracer.reach = &reach;
+        scratch.beams = &beams;
+    }
+    if (status != ASET_OK) {
+        return false;
+    }
     tracer.scene = &draft.stage;
     tracer.draft = &draft;
     tracer.approx_kinds = ASET_ALL_KINDS;
@@ -294,7 +306,7 @@ static void print_ratios(const turn *ours, const turn *theirs, uint32_t n, const
 }
 #endif
 
-static bool compete(uint32_t size, uint32_t rounds, uint32_t grid, uint32_t side) {
+static bool compete(uint32_t size, uint32_t rounds, uint32_t grid, uint32_t side, uint32_t tiles) {
     static turn ours[ROUNDS_MAX], theirs[ROUNDS_MAX];
     model m;
     aset_arena arena;
@@ -302,7 +314,7 @@ static bool compete(uint32_t size, uint32_t rounds, uint32_t grid, uint32_t side
     const aset_counts limits = {0, 0, 0, 0, 0, 0, 16, 0};
     aset_sink sink = {&m, take_background, take_view, take_light, take_material, take_begin, take_point, take_end, take_sphere,
                       take_cone};
-    contest c = {&m, side, grid, malloc(ARENA_BYTES), malloc((size_t)side * side * 3), malloc((size_t)side * side * 3)};
+    contest c = {&m, side, grid, tiles, malloc(ARENA_BYTES), malloc((size_t)side * side * 3), malloc((size_t)side * side * 3)};
     memset(&m, 0, sizeof m);
     if (c.block == NULL || c.ours == NULL || c.theirs == NULL || aset_arena_init(&arena, stage_block, sizeof stage_block) != ASET_OK ||
         aset_scene_init(&m.stage, &arena, &limits) != ASET_OK) {
@@ -346,10 +358,11 @@ static bool compete(uint32_t size, uint32_t rounds, uint32_t grid, uint32_t side
 }
 
 int main(int argc, char **argv) {
-    uint32_t rounds = 7, grid = 64, side = 512;
+    uint32_t rounds = 7, grid = 64, side = 512, tiles = 64;
     int i = 1;
     for (; i + 1 < argc && argv[i][0] == '-'; i += 2) {
-        uint32_t *at = strcmp(argv[i], "--rounds") == 0 ? &rounds : strcmp(argv[i], "--grid") == 0 ? &grid : &side;
+        uint32_t *at = strcmp(argv[i], "--rounds") == 0 ? &rounds : strcmp(argv[i], "--grid") == 0 ? &grid :
+                       strcmp(argv[i], "--tiles") == 0 ? &tiles : &side;
         *at = (uint32_t)strtoul(argv[i + 1], NULL, 10);
     }
     rounds = rounds < 1 ? 1 : rounds > ROUNDS_MAX ? ROUNDS_MAX : rounds;
@@ -358,10 +371,10 @@ int main(int argc, char **argv) {
 #endif
     bool fine = true;
     if (i == argc) {
-        fine = compete(9, rounds, grid, side) && compete(11, rounds, grid, side);
+        fine = compete(9, rounds, grid, side, tiles) && compete(11, rounds, grid, side, tiles);
     }
     for (; i < argc && fine; i++) {
-        fine = compete((uint32_t)strtoul(argv[i], NULL, 10), rounds, grid, side);
+        fine = compete((uint32_t)strtoul(argv[i], NULL, 10), rounds, grid, side, tiles);
     }
     return fine ? 0 : 1;
 }

@@ -212,7 +212,7 @@ static answer generic_closest(const aset_tracer *tracer, const aset_ray *ray, as
 
 /* The library's any-hit tells no t and no object. */
 static answer generic_any(const aset_tracer *tracer, const aset_ray *ray, aset_statistics *statistics) {
-    answer result = {0, 0, query_any(tracer, ray->origin, ray->direction, ray->t_max, false, statistics)};
+    answer result = {0, 0, query_any(tracer, ray->origin, ray->direction, ray->t_max, false, REAL_INFINITY, statistics)};
     return result;
 }
 

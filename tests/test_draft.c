@@ -79,6 +79,48 @@ static aset_status draw(unsigned char *pixels, uint32_t side, const aset_tracer 
     return aset_render_rows(tracer, view, &picture, 0, side, &scratch, statistics);
 }
 
+/* How a picture is drawn: with beams of so many voxels and a reach of so many tiles, or without (0). */
+typedef struct aids {
+    uint32_t voxels, tiles;
+} aids;
+
+static aset_status draw_with(unsigned char *pixels, uint32_t side, aset_tracer tracer, const aset_view *view, aids with,
+                             bool row_by_row, aset_statistics *statistics) {
+    guarded memory = guarded_open((size_t)1 << 20);
+    aset_arena arena;
+    aset_scratch scratch;
+    aset_beams beams;
+    aset_reach reach;
+    aset_picture picture;
+    uint32_t rows = side + tracer.spd_rules;
+    aset_status status = ASET_OK;
+    memset(&picture, 0, sizeof picture);
+    picture.width = picture.height = side;
+    picture.format = ASET_RGBA8888;
+    picture.transparent = true;
+    picture.stride = 4 * (size_t)rows;
+    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+    assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
+    if (with.voxels > 0) {
+        size_t before = arena.used;
+        assert_int_equal(aset_beams_init(&beams, with.voxels, &arena), ASET_OK);
+        assert_int_equal(arena.used - before, ASET_BYTES_BEAMS(with.voxels));
+        scratch.beams = &beams;
+    }
+    if (with.tiles > 0) {
+        size_t before = arena.used;
+        assert_int_equal(aset_reach_init(&reach, tracer.draft, with.tiles, &arena), ASET_OK);
+        assert_int_equal(arena.used - before, ASET_BYTES_REACH(with.tiles, tracer.draft->stage.counts.lights));
+        tracer.reach = &reach;
+    }
+    for (uint32_t row = 0; row < rows && status == ASET_OK; row += row_by_row ? 1 : rows) {
+        picture.pixels = pixels + row * picture.stride;
+        status = aset_render_rows(&tracer, view, &picture, row, row_by_row ? 1 : rows, &scratch, statistics);
+    }
+    guarded_close(&memory);
+    return status;
+}
+
 /* A model with a ground, reflecting things, two lights (one directional, one coloured) and a view. */
 static void model_of(model *m, random_state *r, uint32_t n, bool ground) {
     (void)ground; /* of polygons */
@@ -642,6 +684,138 @@ static void test_draft__beside_a_space(void **state) {
     model_free(&m);
 }
 
+/* Nothing but the cells that are looked at may depend on beams and reach. */
+static void check_same(const aset_statistics *a, const aset_statistics *b, uint64_t seed) {
+    check(a->primary == b->primary && a->primary_hit == b->primary_hit && a->shadow == b->shadow &&
+              a->shadow_hit == b->shadow_hit && a->reflected == b->reflected && a->refracted == b->refracted &&
+              a->secondary_hit == b->secondary_hit && a->curtailed == b->curtailed && a->tests == b->tests &&
+              a->test_hits == b->test_hits && a->approx_hits == b->approx_hits && a->nonempty_visited == b->nonempty_visited,
+          SEED ": %" PRIu64 " %" PRIu64 " primary, %" PRIu64 " %" PRIu64 " hit, %" PRIu64 " %" PRIu64 " shadow, %" PRIu64
+               " %" PRIu64 " not empty",
+          seed, a->primary, b->primary, a->primary_hit, b->primary_hit, a->shadow, b->shadow, a->nonempty_visited,
+          b->nonempty_visited);
+    check(b->cells_visited <= a->cells_visited, SEED ": %" PRIu64 " > %" PRIu64, seed, b->cells_visited, a->cells_visited);
+}
+
+/* Views from everywhere: far, near, among the voxels, along an axis, parallel. */
+static aset_view any_view(random_state *r, uint64_t i) {
+    static const double distances[] = {12, 30, 9, 300, 3, 7};
+    aset_vec3 d = random_direction(r);
+    double distance = distances[i % COUNT_OF(distances)];
+    if (i % 5 == 1) { /* an axis, and two coordinates within the box */
+        d = dvec_real(dvec_make(i % 2 == 0 ? 1 : -1, 0.05, -0.02));
+    }
+    aset_view view = view_from(dvec_real(dvec_make(d.x * distance, d.y * distance, d.z * distance)));
+    view.angle_deg = (aset_real)(distance > 100 ? 3 : 50);
+    view.height = i % 4 == 3 ? R(11) : 0;
+    return view;
+}
+
+static void test_draft__beams_and_reach_change_no_picture(void **state) {
+    (void)state;
+    enum { PIXELS = (SIDE + 1) * (SIDE + 1) * 4 };
+    uint64_t walked = 0, looked_at = 0;
+    for (uint64_t i = 0; i < 48; i++) {
+        static unsigned char plain[PIXELS], aided[PIXELS];
+        static const aids with[] = {{4000, 0}, {0, 32}, {4000, 64}, {60, 7}, {1, 1}};
+        random_state r = random_start(seed_of(i));
+        model m;
+        drawn d;
+        model_of(&m, &r, 200, i % 3 == 0);
+        m.lights[1].position = i % 6 < 3 ? dvec_real(dvec_make(15, 9, 12)) : dvec_real(dvec_make(0.5, 1, 2)); /* among the voxels */
+        bake(&d, &m, 20, 17, 23, i % 2 == 0);
+        aset_tracer tracer = tracer_of(&d.draft);
+        aset_view view = any_view(&r, i);
+        tracer.samples = i % 7 == 2 ? 2 : 1;
+        tracer.spd_rules = i % 7 == 4;
+        tracer.draft_sides = i % 11 == 10;
+        tracer.depth = 1 + (uint32_t)i % 3;
+        aset_statistics a = {0};
+        memset(plain, 0, sizeof plain);
+        assert_int_equal(draw_with(plain, SIDE, tracer, &view, (aids){0, 0}, false, &a), ASET_OK);
+        for (size_t k = 0; k < COUNT_OF(with); k++) {
+            aset_statistics b = {0};
+            memset(aided, 0, sizeof aided);
+            assert_int_equal(draw_with(aided, SIDE, tracer, &view, with[k], k % 2 == 0, &b), ASET_OK);
+            check(memcmp(plain, aided, sizeof plain) == 0, SEED ": %u voxels, %u tiles", r.seed, with[k].voxels, with[k].tiles);
+            check_same(&a, &b, r.seed);
+            walked += k == 2 ? a.cells_visited : 0;
+            looked_at += k == 2 ? b.cells_visited : 0;
+        }
+        drawn_close(&d);
+        model_free(&m);
+    }
+    check(looked_at * 10 < walked * 9, "%" PRIu64 " of %" PRIu64 " cells looked at", looked_at, walked); /* they are of use */
+}
+
+static void test_draft__beams_follow_the_draft_and_the_view(void **state) {
+    (void)state;
+    static unsigned char first[2][SIDE * SIDE * 4], again[SIDE * SIDE * 4];
+    guarded memory = guarded_open((size_t)1 << 18);
+    aset_arena arena;
+    aset_scratch scratch;
+    aset_beams beams;
+    aset_picture picture;
+    memset(&picture, 0, sizeof picture);
+    picture.width = picture.height = SIDE;
+    picture.format = ASET_RGBA8888;
+    picture.stride = 4 * (size_t)SIDE;
+    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+    assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
+    assert_int_equal(aset_beams_init(&beams, 4000, &arena), ASET_OK);
+    for (uint64_t i = 0; i < 8; i++) { /* the same beams for one draft, view and size after the other */
+        random_state r = random_start(seed_of(i));
+        model m;
+        drawn d;
+        model_of(&m, &r, 60, false);
+        bake(&d, &m, 12, 12, 12, true);
+        aset_tracer tracer = tracer_of(&d.draft);
+        for (int k = 0; k < 2; k++) {
+            aset_view view = any_view(&r, (uint64_t)k * 2);
+            picture.pixels = first[k];
+            scratch.beams = NULL;
+            assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, SIDE, &scratch, NULL), ASET_OK);
+            picture.pixels = again;
+            scratch.beams = &beams;
+            assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, SIDE, &scratch, NULL), ASET_OK);
+            check(memcmp(first[k], again, sizeof again) == 0, SEED ": %d", r.seed, k);
+        }
+        drawn_close(&d);
+        model_free(&m);
+    }
+    guarded_close(&memory);
+}
+
+static void test_draft__beams_and_reach_refuse(void **state) {
+    (void)state;
+    uint64_t block[64];
+    aset_arena arena;
+    aset_beams beams;
+    aset_reach reach;
+    random_state r = random_start(seed_of(1));
+    model m;
+    drawn d;
+    model_of(&m, &r, 20, false);
+    bake(&d, &m, 8, 8, 8, true);
+    assert_int_equal(aset_arena_init(&arena, block, sizeof block), ASET_OK);
+    assert_int_equal(aset_beams_init(NULL, 9, &arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_beams_init(&beams, 0, &arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_beams_init(&beams, ASET_BEAMS_MAX + 1, &arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_beams_init(&beams, 9, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_beams_init(&beams, 1000, &arena), ASET_ERR_NOMEM);
+    assert_int_equal(arena.missing, ASET_BYTES_BEAMS(1000) - sizeof block);
+    assert_int_equal(aset_reach_init(NULL, &d.draft, 8, &arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_reach_init(&reach, NULL, 8, &arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_reach_init(&reach, &d.draft, 0, &arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_reach_init(&reach, &d.draft, ASET_REACH_TILES_MAX + 1, &arena), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_reach_init(&reach, &d.draft, 8, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_reach_init(&reach, &d.draft, 64, &arena), ASET_ERR_NOMEM);
+    assert_int_equal(arena.missing, ASET_BYTES_REACH(64, d.draft.stage.counts.lights) - sizeof block);
+    assert_int_equal(arena.used, 0);
+    drawn_close(&d);
+    model_free(&m);
+}
+
 static void test_draft__statistics(void **state) {
     (void)state;
     static unsigned char pixels[SIDE * SIDE * 4];
@@ -724,6 +898,9 @@ int main(void) {
 #endif
         cmocka_unit_test(test_draft__without_a_space_all_rays_must_be_approximate),
         cmocka_unit_test(test_draft__beside_a_space),
+        cmocka_unit_test(test_draft__beams_and_reach_change_no_picture),
+        cmocka_unit_test(test_draft__beams_follow_the_draft_and_the_view),
+        cmocka_unit_test(test_draft__beams_and_reach_refuse),
         cmocka_unit_test(test_draft__statistics),
         cmocka_unit_test(test_draft__all_kept),
     };

@@ -49,7 +49,10 @@ typedef struct prepared {
     aset_draft draft;
     bool is_drafted, is_streamed; /* there is a draft; and there is nothing else */
     aset_counts counts;           /* of the source */
-    aset_scratch *scratches; /* one for each thread */
+    aset_scratch *scratches; /* one for each thread, */
+    aset_beams *beams;       /* and these, if there is room for them */
+    aset_reach reach;
+    aset_mark mark; /* before beams and reach, which are needed while drawing only */
     aset_tracer tracer;
     aset_view view;
     double load_s, build_s;

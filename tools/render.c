@@ -483,6 +483,7 @@ static int render(const request *r) {
     bool done = (r->stats == NULL || tool_output_open(&stats, r->stats)) && (!r->report || tool_output_open(&text, "-"));
     double start = tool_seconds();
     done = done && draw_picture(r, &p, &statistics);
+    aset_arena_release(&p.arena, &p.mark); /* what is used is what is kept; the peak stays */
     aset_report report = {&p.tracer, &p.arena, &statistics, aset_method_name(r->settings.method), cells[r->settings.cells],
                           p.load_s,  p.build_s, tool_seconds() - start, &p.counts};
     if (done && r->stats != NULL) {

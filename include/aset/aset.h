@@ -29,6 +29,8 @@
 #include "aset/space.h"
 #include "aset/summary.h"
 #include "aset/draft.h"
+#include "aset/reach.h"
+#include "aset/beams.h"
 #include "aset/trace.h"
 #include "aset/report.h"
 

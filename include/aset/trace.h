@@ -7,7 +7,8 @@
 #ifndef ASET_TRACE_H
 #define ASET_TRACE_H
 
-#include "aset/draft.h"
+#include "aset/beams.h"
+#include "aset/reach.h"
 #include "aset/summary.h"
 
 #ifdef __cplusplus
@@ -23,6 +24,7 @@ typedef struct aset_tracer {
 #if ASET_WITH_DRAFTS
     const aset_draft *draft; /* not NULL: approximate rays meet this and not the summary. If all kinds are approximate from
                                 depth 0, scene may be &draft->stage and space NULL */
+    const aset_reach *reach; /* of that draft: shadow rays end sooner. NULL: none */
     bool draft_sides;        /* a voxel's own side is the hit, with its facet's normal, instead of the facet's plane */
 #endif
     uint32_t approx_kinds; /* which kinds of rays may be approximate: a mask of aset_kind */
@@ -71,6 +73,9 @@ typedef struct aset_waiting {
 typedef struct aset_scratch {
     aset_waiting *stack;
     uint32_t capacity;
+#if ASET_WITH_DRAFTS
+    aset_beams *beams; /* yours to set: drafts are then drawn in beams; NULL, as aset_scratch_init leaves it: ray by ray */
+#endif
 } aset_scratch;
 
 /* Bytes in the arena of a scratch for rays of this depth. A ray leaves at most one other waiting on each level. */

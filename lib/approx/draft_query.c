@@ -1,9 +1,9 @@
 /*
  * draft_query.c - a draft's answers: the layers that its facets lay over a ray, and before them the objects that it keeps exact.
  */
-#include "approx/draft_ray.h"
+#include "approx/draft_query.h"
+
 #include "scene/approach.h"
-#include "space/answers.h"
 
 #if ASET_WITH_DRAFTS
 
@@ -11,9 +11,8 @@ static draft_mode mode_of(const aset_tracer *tracer) {
     return tracer->draft_sides ? DRAFT_SIDE : DRAFT_PLANE;
 }
 
-/* The nearest of the objects that the draft keeps exact; t_max if there is none before it. */
-static aset_real nearest_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                              aset_statistics *statistics) {
+aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                           aset_statistics *statistics) {
     const aset_scene *stage = &draft->stage;
     probe ray;
     aset_real best = t_max;
@@ -40,18 +39,11 @@ static aset_real nearest_kept(query_hit *hit, const aset_draft *draft, aset_vec3
     return best;
 }
 
-static uint32_t draft_meet(query_hit *layers, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                           aset_statistics *statistics) {
-    draft_layer met[DRAFT_LAYERS_MAX];
-    draft_counts counts;
-    query_hit kept;
-    aset_real end = nearest_kept(&kept, tracer->draft, origin, direction, t_max, statistics), left = 1;
-    uint32_t n = draft_layers(met, tracer->draft, mode_of(tracer), origin, direction, end, &counts);
-    statistics->cells_visited += counts.cells;
-    statistics->nonempty_visited += counts.nonempty;
-    statistics->approx_hits += n > 0;
+uint32_t draft_query_layers(query_hit *hits, const draft_layer *met, uint32_t n, aset_vec3 origin, const query_hit *kept,
+                            bool has_kept) {
+    aset_real left = 1;
     for (uint32_t i = 0; i < n; i++) {
-        query_hit *hit = layers + i;
+        query_hit *hit = hits + i;
         hit->t = hit->t_near = met[i].t;
         hit->near = origin;
         hit->object = ASET_NO_OBJECT;
@@ -63,21 +55,34 @@ static uint32_t draft_meet(query_hit *layers, const aset_tracer *tracer, aset_ve
         hit->by = &draft_answers;
         left -= met[i].cover;
     }
-    if (end < t_max && left > 0) {
-        layers[n] = kept;
-        layers[n++].cover = left;
+    if (has_kept && left > 0) {
+        hits[n] = *kept;
+        hits[n++].cover = left;
     }
     return n;
 }
 
-static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+static uint32_t draft_meet(query_hit *layers, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                           aset_statistics *statistics) {
+    draft_layer met[DRAFT_LAYERS_MAX];
+    draft_counts counts;
+    query_hit kept;
+    aset_real end = draft_query_kept(&kept, tracer->draft, origin, direction, t_max, statistics);
+    uint32_t n = draft_layers(met, tracer->draft, mode_of(tracer), origin, direction, end, &counts);
+    statistics->cells_visited += counts.cells;
+    statistics->nonempty_visited += counts.nonempty;
+    statistics->approx_hits += n > 0;
+    return draft_query_layers(layers, met, n, origin, &kept, end < t_max);
+}
+
+static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, aset_real t_last,
                       aset_statistics *statistics) {
     draft_counts counts;
     query_hit kept;
-    if (nearest_kept(&kept, tracer->draft, origin, direction, t_max, statistics) < t_max) {
+    if (draft_query_kept(&kept, tracer->draft, origin, direction, t_max, statistics) < t_max) {
         return true;
     }
-    bool blocked = draft_blocks(tracer->draft, mode_of(tracer), origin, direction, t_max, &counts);
+    bool blocked = draft_blocks(tracer->draft, mode_of(tracer), origin, direction, t_max, t_last, &counts);
     statistics->cells_visited += counts.cells;
     statistics->nonempty_visited += counts.nonempty;
     statistics->approx_hits += blocked;

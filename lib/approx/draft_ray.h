@@ -33,9 +33,12 @@ typedef enum draft_mode { DRAFT_PLANE, DRAFT_SIDE } draft_mode;
 uint32_t draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
                       aset_vec3 direction, aset_real t_max, draft_counts *counts);
 
-/* Whether anything stops a shadow ray: facets that face the origin, and others beyond the origin's own surroundings. */
+/*
+ * Whether anything stops a shadow ray: facets that face the origin, and others beyond the origin's own surroundings. No marked
+ * voxel lies behind t_last: there the walk ends.
+ */
 bool draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                  draft_counts *counts);
+                  aset_real t_last, draft_counts *counts);
 
 /* How far from the surface, along its normal, rays start that are to meet the draft. */
 aset_real draft_clearance(const aset_draft *draft);

@@ -171,6 +171,38 @@ static inline bool starts_bit(const uint32_t *starts, uint32_t facet_number) {
     return (starts[facet_number >> 5] >> (facet_number & 31u) & 1u) != 0;
 }
 
+static inline bool draft_has_block(const aset_draft *draft, uint32_t block) {
+    return (draft->map[block >> 5] >> (block & 31u) & 1u) != 0;
+}
+
+/* The number among those that are not empty of a block that is not. */
+static inline uint32_t draft_dense_block(const aset_draft *draft, uint32_t block) {
+    return draft->rank[block >> 5] + bits_count(draft->map[block >> 5] & ((UINT32_C(1) << (block & 31u)) - 1));
+}
+
+/* The voxels of a block that is not empty: a bit for each. */
+static inline uint64_t draft_marks(const aset_draft *draft, uint32_t dense) {
+    return (uint64_t)draft->marks[2 * dense] | (uint64_t)draft->marks[2 * dense + 1] << 32;
+}
+
+/* The facets of the k-th marked voxel of a block, counted from 0. */
+static inline void draft_find_facets(const aset_draft *draft, uint32_t block, unsigned k, uint32_t *first, uint32_t *end) {
+    uint32_t at = draft->first[block], word = at >> 5;
+    uint32_t bits = draft->starts[word] & 0xffffffffu << (at & 31u);
+    for (unsigned n; k >= (n = bits_count(bits)); bits = draft->starts[++word]) {
+        k -= n;
+    }
+    for (; k > 0; k--) {
+        bits &= bits - 1;
+    }
+    *first = word * 32 + bits_lowest(bits);
+    bits &= bits - 1;
+    while (bits == 0) {
+        bits = draft->starts[++word]; /* there is a bit behind the last facet's */
+    }
+    *end = word * 32 + bits_lowest(bits);
+}
+
 /* Sets what follows from the header's words: sizes and where the sections are. True: they end with the last word. */
 bool draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words);
 

@@ -97,8 +97,9 @@ static uint32_t summary_meet(query_hit *hit, const aset_tracer *tracer, aset_vec
 }
 
 /* The first cell is any cell. */
-static bool summary_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+static bool summary_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, aset_real t_last,
                         aset_statistics *statistics) {
+    (void)t_last;
     query_hit hit;
     return summary_meet(&hit, tracer, origin, direction, t_max, statistics) > 0;
 }

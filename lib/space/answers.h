@@ -34,7 +34,11 @@ struct aset_answers {
      */
     uint32_t (*meet)(query_hit *hits, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                      aset_statistics *statistics);
-    bool (*any)(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, aset_statistics *statistics);
+    /*
+     * Whether it meets anything at 0 < t < t_max. No cell that a draft has marked lies behind t_last, as far as the asker knows.
+     */
+    bool (*any)(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, aset_real t_last,
+                aset_statistics *statistics);
     /* Normals and material of a hit, and its cell; own is where a material that is kept nowhere is put. */
     void (*surface)(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit);
     /* How far from a surface rays start that are answered here. NULL: the usual distance is enough. */

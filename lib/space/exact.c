@@ -79,8 +79,9 @@ static uint32_t exact_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 
     return found;
 }
 
-static bool exact_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+static bool exact_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, aset_real t_last,
                       aset_statistics *statistics) {
+    (void)t_last;
     probe ray;
     exact_query q;
     aset_real moved = approach_ready(&ray, tracer->scene, origin, direction);

@@ -53,8 +53,8 @@ uint32_t query_layers(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tra
 }
 
 bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
-               aset_statistics *statistics) {
-    return answers_of(tracer, approximate)->any(tracer, origin, direction, t_max, statistics);
+               aset_real t_last, aset_statistics *statistics) {
+    return answers_of(tracer, approximate)->any(tracer, origin, direction, t_max, t_last, statistics);
 }
 
 void query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit,
@@ -132,7 +132,7 @@ aset_status aset_any_hit(bool *found, const aset_tracer *tracer, const aset_ray 
     }
     aset_status status = accept_ray(tracer, ray, approximate, &direction, &length);
     if (status == ASET_OK) {
-        *found = query_any(tracer, ray->origin, direction, ray->t_max * length, approximate,
+        *found = query_any(tracer, ray->origin, direction, ray->t_max * length, approximate, REAL_INFINITY,
                            statistics != NULL ? statistics : &ignored);
     }
     return status;

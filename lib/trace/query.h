@@ -22,8 +22,9 @@ bool query_can(const aset_tracer *tracer, bool approximate);
 /* direction: of unit length. False: nothing hit (or curtailed). */
 bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                    bool approximate, aset_statistics *statistics);
+/* t_last: behind it no marked cell of a draft lies, as far as is known (reach.h). */
 bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
-               aset_statistics *statistics);
+               aset_real t_last, aset_statistics *statistics);
 
 /*
  * What the ray meets, in order, until it is covered: one hit unless a draft answers. How many; the rest of the ray meets

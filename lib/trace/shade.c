@@ -7,7 +7,7 @@
  */
 #include "trace/shade.h"
 
-#include "trace/light.h"
+#include "trace/reach.h"
 
 #define AMBIENT R(0.1)
 #define NUDGE (32 * REAL_UNIT)
@@ -48,11 +48,22 @@ aset_vec3 shade_start_for(const shading *s, aset_vec3 direction, bool approximat
     return vec_along(s->hit.point, vec_dot(direction, s->facing) < 0 ? -s->clearance : s->clearance, s->facing);
 }
 
-static bool in_shadow(const aset_tracer *tracer, const shading *s, const light_ray *towards, uint32_t depth,
+/* Where on the shadow ray to light number light nothing of the draft is left ahead. */
+static aset_real last_before(const aset_tracer *tracer, const shading *s, uint32_t light, const light_ray *towards) {
+#if ASET_WITH_DRAFTS
+    if (tracer->reach != NULL && tracer->reach->draft == tracer->draft) {
+        return reach_last(tracer->reach, light, s->hit.point, real_max(s->clearance, s->nudge), towards);
+    }
+#endif
+    (void)tracer, (void)s, (void)light, (void)towards;
+    return REAL_INFINITY;
+}
+
+static bool in_shadow(const aset_tracer *tracer, const shading *s, uint32_t light, const light_ray *towards, uint32_t depth,
                       aset_statistics *statistics) {
     bool approximate = policy_approximate(tracer, ASET_SHADOW, depth);
     bool hit = query_any(tracer, shade_start_for(s, towards->direction, approximate), towards->direction, towards->distance,
-                         approximate, statistics);
+                         approximate, last_before(tracer, s, light, towards), statistics);
     statistics->shadow++;
     statistics->shadow_hit += hit;
     return hit;
@@ -83,7 +94,7 @@ aset_colour shade_local(const aset_tracer *tracer, const shading *s, uint32_t de
             continue;
         }
         aset_real n_dot_l = vec_dot(normal, towards.direction);
-        if (!(n_dot_l > 0) || in_shadow(tracer, s, &towards, depth, statistics)) {
+        if (!(n_dot_l > 0) || in_shadow(tracer, s, i, &towards, depth, statistics)) {
             continue;
         }
         aset_real diffuse = m->diffuse * n_dot_l;

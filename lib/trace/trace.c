@@ -27,6 +27,9 @@ aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena 
     }
     scratch->stack = stack;
     scratch->capacity = depth;
+#if ASET_WITH_DRAFTS
+    scratch->beams = NULL;
+#endif
     return ASET_OK;
 }
 
@@ -112,8 +115,8 @@ static aset_real shade_layers(aset_colour *sum, const aset_tracer *tracer, aset_
 }
 
 /* The tree behind one eye ray of unit direction; *cover: the share of the eye ray itself that hit something. */
-aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_scratch *scratch,
-                       aset_statistics *statistics, aset_real *cover) {
+aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, const eye_hits *known,
+                       aset_scratch *scratch, aset_statistics *statistics, aset_real *cover) {
     aset_colour sum = {0, 0, 0};
     uint32_t n = 1;
     scratch->stack[0].origin = origin;
@@ -122,15 +125,17 @@ aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 di
     scratch->stack[0].depth = 0;
     scratch->stack[0].kind = ASET_PRIMARY;
     *cover = 0;
-    while (n > 0) {
+    for (; n > 0; known = NULL) { /* the eye ray comes first */
         const aset_waiting *ray = scratch->stack + --n; /* gone when the next ones are left */
         aset_vec3 direction_of = ray->direction;
         aset_real weight = ray->weight, left = 1;
         uint32_t depth = ray->depth;
         aset_kind kind = (aset_kind)ray->kind;
-        query_hit layers[QUERY_LAYERS_MAX];
-        uint32_t n_layers = query_layers(layers, tracer, ray->origin, direction_of, policy_approximate(tracer, kind, depth),
-                                         statistics);
+        query_hit found[QUERY_LAYERS_MAX];
+        const query_hit *layers = known != NULL ? known->layers : found;
+        uint32_t n_layers = known != NULL ? known->n
+                                          : query_layers(found, tracer, ray->origin, direction_of,
+                                                         policy_approximate(tracer, kind, depth), statistics);
         count_ray(statistics, kind, n_layers > 0);
         if (n_layers == 1 && layers[0].cover == 1) {
             shading s;
@@ -179,6 +184,6 @@ aset_status aset_ray_colour(aset_colour *colour, const aset_tracer *tracer, cons
         return ASET_ERR_ARGUMENT;
     }
     memset(&ignored, 0, sizeof ignored);
-    *colour = trace_tree(tracer, ray->origin, direction, scratch, statistics != NULL ? statistics : &ignored, &cover);
+    *colour = trace_tree(tracer, ray->origin, direction, NULL, scratch, statistics != NULL ? statistics : &ignored, &cover);
     return ASET_OK;
 }

@@ -1,0 +1,36 @@
+/* draft_beam.h - a beam: neighbouring rays that meet a draft's voxels together. */
+#ifndef ASET_APPROX_DRAFT_BEAM_H
+#define ASET_APPROX_DRAFT_BEAM_H
+
+#include "approx/draft_cover.h"
+
+#if ASET_WITH_DRAFTS
+
+/* Rays of a beam: as many as wide registers hold, a voxel's width in a usual picture. */
+#define DRAFT_BEAM 8
+
+/* Rays side by side in every array, so that a compiler can do several at a time. In columns, as in draft_ray.c. */
+typedef struct draft_beam {
+    const aset_draft *draft;
+    aset_real o[3][DRAFT_BEAM], d[3][DRAFT_BEAM];
+    aset_real from[3][DRAFT_BEAM], inverse[3][DRAFT_BEAM], turned[3][DRAFT_BEAM]; /* turned: 1 or 0 */
+    aset_real t_max[DRAFT_BEAM];
+    aset_real end[DRAFT_BEAM];  /* of the last layer */
+    aset_real left[DRAFT_BEAM]; /* 0: the ray is done */
+    draft_cover cover[DRAFT_BEAM];
+    draft_layer layers[DRAFT_BEAM][DRAFT_LAYERS_MAX];
+    uint64_t n_visited; /* voxels, of all rays */
+} draft_beam;
+
+/* Up to DRAFT_BEAM rays of unit direction, which meet facets at 0 < t < t_max. */
+void draft_beam_start(draft_beam *beam, const aset_draft *draft, const aset_vec3 *origins, const aset_vec3 *directions,
+                      const aset_real *t_max, uint32_t n);
+
+/*
+ * Lays on the rays what they meet in voxel number k (by its bit) of a block that is not empty: number dense, the at[0]-th on x and so
+ * on. Voxels must come in an order in which every ray passes those that it meets. True: all rays are done.
+ */
+bool draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k);
+
+#endif
+#endif

@@ -1,0 +1,81 @@
+/*
+ * draft_cover.h - what facets lay over a ray: how much of it a footprint stops, and the layers that it has met so far.
+ *
+ * The tolerances, all in columns, were chosen on bunny, gears, mount and tetra (docs/drafts.md).
+ */
+#ifndef ASET_APPROX_DRAFT_COVER_H
+#define ASET_APPROX_DRAFT_COVER_H
+
+#include "approx/draft_ray.h"
+
+#if ASET_WITH_DRAFTS
+
+#define BEYOND_SIDES R(0.25)  /* a facet's plane is met so far beside its voxel, */
+#define BEYOND_HEIGHT R(0.5)  /* and so far above or below it: neighbours' planes do not meet exactly */
+#define SOFTNESS R(2)         /* how steeply cover falls across a footprint's edge, per column */
+#define SOFT_BIAS R(0.2)      /* and how much more than half of it lies outside: closes the seams between footprints */
+#define COVER_LEAST R(0.03)   /* less cover is none, */
+#define COVER_MOST R(0.97)    /* more is all */
+
+/* A voxel has a facet on each of its sides at most. */
+#define DRAFT_FACETS_MAX 6
+
+/* One facet's answer. */
+typedef struct draft_meeting {
+    aset_real t, cover;
+    uint32_t facet;
+    bool away; /* it faces away from the ray's origin */
+} draft_meeting;
+
+typedef struct draft_cover {
+    draft_layer *layers;
+    uint32_t n;
+    aset_real left; /* of the ray, uncovered */
+} draft_cover;
+
+static inline draft_cover draft_cover_of(draft_layer *layers) {
+    draft_cover c = {layers, 0, 1};
+    return c;
+}
+
+/* Facets are met behind this t only. */
+static inline aset_real draft_cover_end(const draft_cover *c) {
+    return c->n > 0 ? c->layers[c->n - 1].t : 0;
+}
+
+/* The column's bit, or the nearest column's. */
+static inline bool draft_bit_at(uint32_t footprint, int i, int j) {
+    i = i < 0 ? 0 : i > 3 ? 3 : i;
+    j = j < 0 ? 0 : j > 3 ? 3 : j;
+    return (footprint >> (i + 4 * j) & 1u) != 0;
+}
+
+/* How much of a ray through (u, v) the footprint stops: its columns interpolated, so that edges are soft. */
+static inline aset_real draft_soft_cover(uint32_t footprint, aset_real u, aset_real v) {
+    if (footprint == 0xffffu) {
+        return 1;
+    }
+    aset_real x = u - R(0.5), y = v - R(0.5);
+    int i = (int)(x + 1) - 1, j = (int)(y + 1) - 1; /* floor: both are -1 to 3 */
+    aset_real a = x - (aset_real)i, b = y - (aset_real)j;
+    unsigned left = i < 0 ? 0 : (unsigned)i, right = i < 3 ? (unsigned)(i + 1) : 3u;
+    unsigned low = footprint >> (j < 0 ? 0 : 4 * j), high = footprint >> (j < 3 ? 4 * (j + 1) : 12);
+    aset_real mean = (1 - b) * ((1 - a) * (aset_real)(int)(low >> left & 1u) + a * (aset_real)(int)(low >> right & 1u)) +
+                     b * ((1 - a) * (aset_real)(int)(high >> left & 1u) + a * (aset_real)(int)(high >> right & 1u));
+    aset_real cover = (mean - R(0.5)) * SOFTNESS + R(0.5) + SOFT_BIAS;
+    return cover < COVER_LEAST ? 0 : cover > COVER_MOST ? 1 : cover;
+}
+
+/* Puts a meeting among the n found in a voxel, the nearest first. */
+static inline void draft_meeting_insert(draft_meeting *found, uint32_t n, const draft_meeting *m) {
+    for (; n > 0 && found[n - 1].t > m->t; n--) {
+        found[n] = found[n - 1];
+    }
+    found[n] = *m;
+}
+
+/* Lays what a voxel's facets gave, nearest first, behind what is there. True: nothing behind matters any more. */
+bool draft_cover_add(draft_cover *c, const draft_meeting *found, uint32_t n);
+
+#endif
+#endif

@@ -1,0 +1,299 @@
+/*
+ * beam.c - which voxels lie before which pixels.
+ *
+ *     band of 8 rows    +-+---+------+--      its voxels, nearest first, each with its columns and rows
+ *                       | |   |      |
+ *     row                                     those of the band that it meets
+ *     segment           |======|              of 64 columns: those of the row that it meets
+ *     beam                |==|                of 8 columns: those of the segment that it meets
+ *
+ * The order is one in which every ray from the eye passes what it meets: away from the eye's own voxel on each axis, blocks
+ * before voxels. A band that shows more voxels than there is room for is left to single rays.
+ */
+#include "trace/beam.h"
+
+#include "approx/draft_beam.h"
+#include "approx/draft_query.h"
+#include "trace/outlook.h"
+
+#include <string.h>
+
+#if ASET_WITH_DRAFTS
+
+#define SEGMENT 64u
+#define NONE UINT32_MAX
+/* Pixels that an outline's edges may err by: a picture's width has 16 bits, and a float 24. */
+#define PAD R(0.02)
+
+typedef struct order {
+    uint8_t at[3][128]; /* blocks on each axis, in order */
+    uint8_t in_block[3][3][4]; /* voxels of a block: of one before the eye's own on the axis, of that one, of one behind */
+    int32_t eye_block[3];
+} order;
+
+typedef struct band_maker {
+    aset_beams *beams;
+    const beam_frame *frame;
+    outlook_cells cells;
+    aset_outlook outlook;
+    order order;
+    uint32_t first_row;
+} band_maker;
+
+/* The eye's voxel on an axis; before all or behind all of them if everything is seen from there. */
+static int32_t eye_voxel(const band_maker *m, int a) {
+    const aset_draft *draft = m->frame->draft;
+    int32_t n = (int32_t)draft->n[a];
+    if (m->outlook.parallel) {
+        return vec_at(&m->outlook.forward, a) >= 0 ? -1 : n;
+    }
+    aset_real k = (vec_at(&m->outlook.from, a) - draft->low[a]) * draft->per_size[a] / 4;
+    return k < 0 ? -1 : k >= (aset_real)n ? n : (int32_t)k;
+}
+
+static void make_order(band_maker *m) {
+    for (int a = 0; a < 3; a++) {
+        int32_t n = (int32_t)m->frame->draft->blocks[a], voxel = eye_voxel(m, a), eye = voxel < 0 ? -1 : voxel / 4, at = 0;
+        for (int32_t k = eye < 0 ? 0 : eye; k < n; k++) {
+            m->order.at[a][at++] = (uint8_t)k;
+        }
+        for (int32_t k = eye < n ? eye - 1 : n - 1; k >= 0; k--) {
+            m->order.at[a][at++] = (uint8_t)k;
+        }
+        m->order.eye_block[a] = eye;
+        for (uint8_t k = 0; k < 4; k++) {
+            m->order.in_block[a][0][k] = (uint8_t)(3 - k);
+            m->order.in_block[a][2][k] = k;
+        }
+        at = 0;
+        for (int32_t k = voxel < 0 ? 0 : voxel & 3; k < 4; k++) {
+            m->order.in_block[a][1][at++] = (uint8_t)k;
+        }
+        for (int32_t k = (voxel < 0 ? 0 : voxel & 3) - 1; k >= 0; k--) {
+            m->order.in_block[a][1][at++] = (uint8_t)k;
+        }
+    }
+}
+
+static const uint8_t *voxel_order(const order *o, int a, uint32_t block) {
+    int32_t from_eye = (int32_t)block - o->eye_block[a];
+    return o->in_block[a][from_eye < 0 ? 0 : from_eye > 0 ? 2 : 1];
+}
+
+/* The pixels, of n, of whose samples some lie between low and high in -1..1. False: none. */
+static bool pixels_between(int32_t *first, int32_t *last, aset_real low, aset_real high, uint32_t size, uint32_t n,
+                           const beam_frame *f) {
+    aset_real half = R(0.5) / (aset_real)(int32_t)f->samples, scale = (aset_real)(int32_t)size / 2, end = (aset_real)(int32_t)n;
+    aset_real from = (low + 1) * scale + f->corner - (1 - half) - PAD, to = (high + 1) * scale + f->corner - half + PAD;
+    if (!(from < end && to >= 0)) {
+        return false;
+    }
+    *first = from > 0 ? (int32_t)from + ((aset_real)(int32_t)from < from) : 0;
+    *last = to < end ? (int32_t)to : (int32_t)n - 1;
+    return *first <= *last;
+}
+
+/* Adds a voxel if the band shows it. False: no room. */
+static bool add_voxel(band_maker *m, const uint8_t block[3], uint32_t dense, uint32_t x, uint32_t y, uint32_t z) {
+    aset_beams *b = m->beams;
+    const beam_frame *f = m->frame;
+    aset_vec3 middle = outlook_middle(&m->cells, block[0] * 4u + x, block[1] * 4u + y, block[2] * 4u + z);
+    outlook_rectangle r = outlook_of(&m->outlook, vec_sub(middle, m->outlook.from), 1);
+    int32_t left, right, top, bottom, first = (int32_t)m->first_row;
+    if (!pixels_between(&top, &bottom, r.top, r.bottom, f->height, f->rows, f) || bottom < first ||
+        top >= first + (int32_t)BEAM_ROWS || !pixels_between(&left, &right, r.left, r.right, f->width, f->columns, f)) {
+        return true;
+    }
+    if (b->n_voxels == b->capacity) {
+        return false;
+    }
+    aset_beam_voxel *v = b->voxels + b->n_voxels++;
+    v->left = (uint16_t)left;
+    v->right = (uint16_t)right;
+    v->top = (uint8_t)(top > first ? top - first : 0);
+    v->bottom = (uint8_t)(bottom - first < (int32_t)BEAM_ROWS ? bottom - first : (int32_t)BEAM_ROWS - 1);
+    v->in_block = (uint8_t)(x + 4 * y + 16 * z);
+    v->dense = dense;
+    v->block[0] = block[0];
+    v->block[1] = block[1];
+    v->block[2] = block[2];
+    return true;
+}
+
+/* Does the band show anything of the block? */
+static bool shows_block(const band_maker *m, const uint8_t block[3]) {
+    const beam_frame *f = m->frame;
+    aset_vec3 corner = outlook_middle(&m->cells, block[0] * 4u, block[1] * 4u, block[2] * 4u);
+    aset_vec3 way = vec_sub(vec_add(corner, vec_scale(m->cells.voxel, R(1.5))), m->outlook.from);
+    int32_t top, bottom;
+    if (!m->outlook.parallel && !(vec_dot(way, m->outlook.forward) > 4 * m->outlook.half_forward)) {
+        return true; /* it reaches beside the eye, though no voxel does */
+    }
+    outlook_rectangle r = outlook_of(&m->outlook, way, 4);
+    return pixels_between(&top, &bottom, r.top, r.bottom, f->height, f->rows, f) && bottom >= (int32_t)m->first_row &&
+           top < (int32_t)(m->first_row + BEAM_ROWS);
+}
+
+static bool add_block(band_maker *m, const uint8_t block[3], uint32_t dense) {
+    const uint8_t *in_x = voxel_order(&m->order, 0, block[0]), *in_y = voxel_order(&m->order, 1, block[1]);
+    const uint8_t *in_z = voxel_order(&m->order, 2, block[2]);
+    uint64_t marks = draft_marks(m->frame->draft, dense);
+    for (int z = 0; z < 4; z++) {
+        for (int y = 0; y < 4; y++) {
+            unsigned row = (unsigned)(marks >> (16 * in_z[z] + 4 * in_y[y])) & 15u;
+            for (int x = 0; x < 4 && row != 0; x++) {
+                if ((row >> in_x[x] & 1u) != 0 && !add_voxel(m, block, dense, in_x[x], in_y[y], in_z[z])) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
+static bool fill_band(band_maker *m) {
+    const aset_draft *draft = m->frame->draft;
+    const uint32_t *n = draft->blocks;
+    for (uint32_t z = 0; z < n[2]; z++) {
+        for (uint32_t y = 0; y < n[1]; y++) {
+            for (uint32_t x = 0; x < n[0]; x++) {
+                const uint8_t at[3] = {m->order.at[0][x], m->order.at[1][y], m->order.at[2][z]};
+                uint32_t block = (at[2] * n[1] + at[1]) * n[0] + at[0];
+                if (draft_has_block(draft, block) && shows_block(m, at) && !add_block(m, at, draft_dense_block(draft, block))) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
+static bool same(aset_vec3 a, aset_vec3 b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* Are the beams of this very draft, eye and picture already? */
+static bool is_of(const aset_beams *b, const beam_frame *f) {
+    const camera *eye = f->eye;
+    return b->words == f->draft->words && b->check == f->draft->words[WORD_CHECK] && same(b->eye[0], eye->from) &&
+           same(b->eye[1], eye->forward) && same(b->eye[2], eye->right) && same(b->eye[3], eye->down) &&
+           b->parallel == eye->orthographic && b->width == f->width && b->height == f->height && b->samples == f->samples &&
+           b->corner == f->corner;
+}
+
+static bool begin(aset_beams *beams, const beam_frame *frame) {
+    const camera *eye = frame->eye;
+    if (is_of(beams, frame)) {
+        return beams->can_see;
+    }
+    outlook_cells cells = outlook_cells_of(frame->draft);
+    aset_outlook outlook;
+    outlook_set_camera(&outlook, eye);
+    beams->band = beams->segment = NONE;
+    beams->words = frame->draft->words;
+    beams->check = frame->draft->words[WORD_CHECK];
+    beams->eye[0] = eye->from;
+    beams->eye[1] = eye->forward;
+    beams->eye[2] = eye->right;
+    beams->eye[3] = eye->down;
+    beams->parallel = eye->orthographic;
+    beams->width = frame->width;
+    beams->height = frame->height;
+    beams->samples = frame->samples;
+    beams->corner = frame->corner;
+    beams->can_see = frame->draft->n_facets > 0 && outlook_can_see(&outlook, &cells);
+    return beams->can_see;
+}
+
+static bool begin_row(aset_beams *beams, const beam_frame *frame, uint32_t row) {
+    if (beams->band != row / BEAM_ROWS) {
+        band_maker m;
+        m.beams = beams;
+        m.frame = frame;
+        m.first_row = row / BEAM_ROWS * BEAM_ROWS;
+        m.cells = outlook_cells_of(frame->draft);
+        outlook_set_camera(&m.outlook, frame->eye);
+        outlook_set_voxels(&m.outlook, &m.cells, 0);
+        make_order(&m);
+        beams->band = row / BEAM_ROWS;
+        beams->n_voxels = 0;
+        beams->overflow = !fill_band(&m);
+    }
+    uint32_t in_band = row % BEAM_ROWS, n = 0;
+    for (uint32_t i = 0; i < beams->n_voxels; i++) {
+        const aset_beam_voxel *v = beams->voxels + i;
+        beams->in_row[n] = (uint16_t)i;
+        n += (v->top <= in_band) & (v->bottom >= in_band);
+    }
+    beams->n_in_row = n;
+    beams->segment = NONE;
+    return !beams->overflow;
+}
+
+static bool choose(aset_beams *beams, uint32_t column) {
+    if (beams->segment != column / SEGMENT) {
+        uint32_t from = column / SEGMENT * SEGMENT, to = from + SEGMENT - 1, n = 0;
+        for (uint32_t i = 0; i < beams->n_in_row; i++) {
+            const aset_beam_voxel *v = beams->voxels + beams->in_row[i];
+            beams->in_segment[n] = beams->in_row[i];
+            n += (v->left <= to) & (v->right >= from);
+        }
+        beams->n_in_segment = n;
+        beams->segment = column / SEGMENT;
+    }
+    uint32_t last = column + BEAM_RAYS - 1, n = 0;
+    for (uint32_t i = 0; i < beams->n_in_segment; i++) {
+        const aset_beam_voxel *v = beams->voxels + beams->in_segment[i];
+        beams->chosen[n] = beams->in_segment[i];
+        n += (v->left <= last) & (v->right >= column);
+    }
+    beams->n_chosen = n;
+    return n > 0;
+}
+
+static void meet(aset_beams *beams, beam_rays *rays, uint32_t n, const aset_tracer *tracer, aset_statistics *statistics) {
+    draft_beam beam;
+    query_hit kept[BEAM_RAYS];
+    aset_real ends[BEAM_RAYS];
+    for (uint32_t i = 0; i < n; i++) {
+        ends[i] = draft_query_kept(&kept[i], tracer->draft, rays->origins[i], rays->directions[i], REAL_INFINITY, statistics);
+    }
+    draft_beam_start(&beam, tracer->draft, rays->origins, rays->directions, ends, n);
+    for (uint32_t i = 0; i < beams->n_chosen; i++) {
+        const aset_beam_voxel *v = beams->voxels + beams->chosen[i];
+        const uint32_t at[3] = {v->block[0], v->block[1], v->block[2]};
+        if (draft_beam_visit(&beam, at, v->dense, v->in_block)) {
+            break;
+        }
+    }
+    statistics->cells_visited += beam.n_visited;
+    statistics->nonempty_visited += beam.n_visited;
+    for (uint32_t i = 0; i < n; i++) {
+        statistics->approx_hits += beam.cover[i].n > 0;
+        rays->hits[i].n = draft_query_layers(rays->hits[i].layers, beam.layers[i], beam.cover[i].n, rays->origins[i], &kept[i],
+                                             ends[i] < REAL_INFINITY);
+    }
+}
+
+static const struct aset_beam_calls calls = {begin, begin_row, choose, meet};
+
+aset_status aset_beams_init(aset_beams *beams, uint32_t voxels, aset_arena *arena) {
+    if (beams == NULL || arena == NULL || voxels < 1 || voxels > ASET_BEAMS_MAX) {
+        return ASET_ERR_ARGUMENT;
+    }
+    unsigned char *at = aset_arena_alloc(arena, ASET_BYTES_BEAMS(voxels), ASET_CATEGORY_SCRATCH);
+    if (at == NULL) {
+        return ASET_ERR_NOMEM;
+    }
+    memset(beams, 0, sizeof *beams);
+    beams->calls = &calls;
+    beams->voxels = (aset_beam_voxel *)(void *)at;
+    beams->in_row = (uint16_t *)(void *)(at + voxels * sizeof *beams->voxels);
+    beams->in_segment = beams->in_row + voxels;
+    beams->chosen = beams->in_segment + voxels;
+    beams->capacity = voxels;
+    beams->band = beams->segment = NONE;
+    return ASET_OK;
+}
+
+#endif
