@@ -4,8 +4,10 @@
  * camera, lights and shading formula; rounds are interleaved, and the ratio printed is the median of the rounds' own ratios.
  * Without Embree, ours alone.
  *
- *      bench_drafts [--rounds N] [--grid N] [--side N] [--tiles N] [SIZE ...]      sizes of tetra, 4^SIZE triangles; default
- *                    9 11; tiles: of the reach, 0 for none
+ *      bench_drafts [--rounds N] [--grid N] [--side N] [--tiles N] [SIZE ...]
+ *
+ * Sizes are tetra's, 4^SIZE triangles, 9 and 11 unless given; tiles are the reach's, 64 unless given, and 0 does without reach
+ * and beams.
  */
 #include "bench_common.h"
 
