@@ -223,7 +223,8 @@ static void source_open(source *s, const char *text) {
     const aset_counts *n = &counter.counts;
     size_t bytes = ASET_BYTES_SCENE(n->objects, n->coordinates, n->materials, n->lights);
     s->scene_block = filled(bytes);
-    need(aset_arena_init(&arena, s->scene_block, bytes) == ASET_OK, text, "scene", "no arena");
+    aset_status status = aset_arena_init(&arena, s->scene_block, bytes);
+    need(status == ASET_OK, text, "arena", aset_status_text(status));
     need(aset_scene_init(&s->scene, &arena, n) == ASET_OK, text, "scene", "its bytes are too few");
     sink = aset_scene_sink(&s->scene);
     source_emit(s, &sink);

@@ -1,6 +1,12 @@
 /* test_arena.c - the bump allocator: what fits, what does not, and what is accounted. */
 #include "support/support.h"
 
+#include <fenv.h>
+#include <float.h>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
 static void test_arena__start_refuses_bad_blocks(void **state) {
     (void)state;
     uint64_t words[4];
@@ -15,6 +21,33 @@ static void test_arena__start_refuses_bad_blocks(void **state) {
     for (int i = 0; i < ASET_CATEGORY_COUNT; i++) {
         assert_true(arena.used_by[i] == 0 && arena.peak_by[i] == 0);
     }
+}
+
+/* Whoever sets the processor's rounding otherwise is told so, and can start once it is set back. */
+static void test_arena__start_refuses_other_arithmetic(void **state) {
+    (void)state;
+    uint64_t words[4];
+    aset_arena arena;
+    static const int modes[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+    for (size_t i = 0; i < COUNT_OF(modes); i++) {
+        assert_int_equal(fesetround(modes[i]), 0);
+        aset_status status = aset_arena_init(&arena, words, sizeof words);
+        fesetround(FE_TONEAREST);
+        assert_int_equal(status, ASET_ERR_ARITHMETIC);
+    }
+#ifdef __SSE__
+    unsigned before = _mm_getcsr();
+    static const unsigned flushing[] = {0x8000u, 0x0040u}; /* results, operands */
+    for (size_t i = 0; i < COUNT_OF(flushing); i++) {
+        _mm_setcsr(before | flushing[i]);
+        volatile float least = FLT_MIN, less = least / 2;
+        bool flushed = !(less + less == least); /* an emulator may not know how */
+        aset_status status = aset_arena_init(&arena, words, sizeof words);
+        _mm_setcsr(before);
+        assert_int_equal(status, flushed ? ASET_ERR_ARITHMETIC : ASET_OK);
+    }
+#endif
+    assert_int_equal(aset_arena_init(&arena, words, sizeof words), ASET_OK);
 }
 
 static void test_arena__size_zero_gives_nothing(void **state) {
@@ -179,6 +212,7 @@ static void test_arena__static_blocks_are_large_enough_and_aligned(void **state)
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_arena__start_refuses_bad_blocks),
+        cmocka_unit_test(test_arena__start_refuses_other_arithmetic),
         cmocka_unit_test(test_arena__size_zero_gives_nothing),
         cmocka_unit_test(test_arena__gives_aligned_pieces_in_a_row),
         cmocka_unit_test(test_arena__exact_fit),

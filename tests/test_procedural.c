@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "aset/procedural.h"
+#include "procedural/elementary.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -539,6 +540,24 @@ static void test_procedural__no_sink(void **state) {
     }
 }
 
+/* --- the scenes' own sine and logarithm against libm's --- */
+
+static void test_procedural__elementary_functions(void **state) {
+    (void)state;
+    const double bound = ldexp(1.0, -50); /* 2^-51 of ours, and the same for libm's */
+    for (int i = -40000; i <= 40000; i++) {
+        double rad = i / 1000.0 + i / 7.0e7;
+        assert_true(fabs(aset_emit_sine(rad) - sin(rad)) <= bound);
+        assert_true(fabs(aset_emit_cosine(rad) - cos(rad)) <= bound);
+        assert_true(fabs(aset_emit_tangent(rad) - tan(rad)) <= bound * (1.0 + tan(rad) * tan(rad)));
+    }
+    for (int i = -30000; i <= 30000; i++) {
+        double x = exp(i / 50.0);
+        assert_true(fabs(aset_emit_logarithm(x) - log(x)) <= bound * fmax(1.0, fabs(log(x))));
+    }
+    assert_true(aset_emit_logarithm(1.0) == 0.0 && aset_emit_sine(0.0) == 0.0 && aset_emit_cosine(0.0) == 1.0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_procedural__table),
@@ -550,6 +569,7 @@ int main(void) {
         cmocka_unit_test(test_procedural__unsupported),
         cmocka_unit_test(test_procedural__sink_errors),
         cmocka_unit_test(test_procedural__no_sink),
+        cmocka_unit_test(test_procedural__elementary_functions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,6 +53,11 @@ typedef struct aset_mark {
  * Starts an arena on the caller's block of size bytes, which must be aligned to ASET_ALIGN and stay valid as long as
  * anything in it is used. A size of 0 with any block is allowed: every allocation then fails. ASET_ERR_ARGUMENT: no arena,
  * no block of a size above 0, or a block that is not aligned.
+ *
+ * Everything begins here, so here the arithmetic is looked at: ASET_ERR_ARITHMETIC if the library was compiled to fuse a * b + c
+ * into one rounding (-ffp-contract=off keeps it from that), or if the program at this moment rounds otherwise than to nearest or
+ * flushes denormals to 0 (linking with -ffast-math does that). The methods' exact agreement, and the promise of the same picture
+ * from every machine, need all three. (What the compiler shows of it by macros already fails when the library is compiled.)
  */
 aset_status aset_arena_init(aset_arena *arena, void *block, size_t size);
 

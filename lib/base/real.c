@@ -9,6 +9,16 @@
  */
 #include "base/real.h"
 
+/* All numbers through volatile ones: so the compiler cannot do these sums itself. */
+bool real_is_sound(void) {
+    const volatile aset_real one = 1, up = 1 + 2 * REAL_UNIT, unit = REAL_UNIT, least = REAL_LEAST;
+    aset_real x = up, square = one + 4 * unit;
+    aset_real fused = x * x - square; /* x * x = 1 + 4 u + 4 u^2, of which the last is rounded away */
+    aset_real even_below = one + unit, even_above = one + 3 * unit, below = -one - unit; /* ties */
+    volatile aset_real denormal = least / 2;
+    return fused == 0 && even_below == 1 && even_above == square && below == -1 && denormal > 0 && denormal + denormal == least;
+}
+
 /* The logarithm to base 2 of a normal x > 0. Halving and doubling are exact, so no bit pattern is looked at. */
 static aset_real log2_of(aset_real x) {
     const aset_real least = R(0.70710678);

@@ -30,13 +30,21 @@
 
 #if ASET_REAL_BITS == 32
 #define REAL_MAX FLT_MAX
+#define REAL_LEAST FLT_MIN /* the smallest that is no denormal */
 /* u, the largest relative error of one rounding */
 #define REAL_UNIT (FLT_EPSILON / 2)
 #else
 #define REAL_MAX DBL_MAX
+#define REAL_LEAST DBL_MIN
 #define REAL_UNIT (DBL_EPSILON / 2)
 #endif
 #define REAL_INFINITY ((aset_real)INFINITY)
+
+/*
+ * What macros do not show: that a product and a sum are rounded each by itself, to nearest, and that denormals are numbers. False
+ * where a compiler's flags or the program's own settings have it otherwise.
+ */
+bool real_is_sound(void);
 
 static inline aset_real real_sqrt(aset_real x) {
 #if ASET_REAL_BITS == 32

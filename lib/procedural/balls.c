@@ -6,6 +6,7 @@
  * Source: E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987, and the Standard Procedural
  * Databases 3 that came of it.
  */
+#include "elementary.h"
 #include "emit.h"
 
 #include <math.h>
@@ -22,8 +23,8 @@ static void directions(emit_point result[n_children]) {
     for (int i = 0; i < n_children; i++) {
         double azimuth = EMIT_RAD(azimuth_deg[i % 3] + 120.0 * (i / 3));
         double across = i % 3 == 0 ? 1.0 / sqrt(3.0) : 1.0;
-        result[i].x = across * cos(azimuth);
-        result[i].y = across * sin(azimuth);
+        result[i].x = across * aset_emit_cosine(azimuth);
+        result[i].y = across * aset_emit_sine(azimuth);
         result[i].z = i % 3 == 0 ? sqrt(2.0 / 3.0) : 0.0;
     }
 }

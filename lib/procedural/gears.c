@@ -10,6 +10,7 @@
  * Source: E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987, and the Standard Procedural
  * Databases 3 that came of it.
  */
+#include "elementary.h"
 #include "emit.h"
 
 #include <math.h>
@@ -32,8 +33,8 @@ static void outline(emit_point points[n_outline], const wheel *all, const emit_p
     for (int i = 0; i < n_outline; i++) {
         double angle = EMIT_RAD(phase_deg + turn * pitch_deg * (i / 4 + pitch_share[i % 4]));
         double radius = i % 4 < 2 ? all->outer : all->inner;
-        points[i].x = centre->x + radius * cos(angle);
-        points[i].y = centre->y + radius * sin(angle);
+        points[i].x = centre->x + radius * aset_emit_cosine(angle);
+        points[i].y = centre->y + radius * aset_emit_sine(angle);
         points[i].z = centre->z;
     }
 }

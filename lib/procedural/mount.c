@@ -13,6 +13,7 @@
  * Graphics Environments", IEEE CG&A 7(11), 1987, and the Standard Procedural Databases 3 for this mountain. Its hash is
  * the original one, which repeats itself from size 8 on; it is kept because the published figures belong to it.
  */
+#include "elementary.h"
 #include "emit.h"
 
 #include <math.h>
@@ -56,7 +57,7 @@ static double pseudo_normal(const mountain *all, uint32_t a, uint32_t b) {
         v2 = 2.0 * seed / 134456.0 - 1.0;
         r = v1 * v1 + v2 * v2;
     } while (r >= 1.0);
-    return v1 * sqrt(-2.0 * log(r) / r);
+    return v1 * sqrt(-2.0 * aset_emit_logarithm(r) / r);
 }
 
 static emit_point vertex(const mountain *all, uint32_t i, uint32_t j, double height) {
@@ -120,8 +121,8 @@ static aset_status spheres(const aset_sink *sink) {
     }
     for (int i = 0; i < 3 && status == ASET_OK; i++) {
         double azimuth = EMIT_RAD(-45.0 + 120.0 * i);
-        centre.x = middle.x + across * cos(azimuth);
-        centre.y = middle.y + across * sin(azimuth);
+        centre.x = middle.x + across * aset_emit_cosine(azimuth);
+        centre.y = middle.y + across * aset_emit_sine(azimuth);
         centre.z = middle.z - height / 3.0;
         status = aset_emit_sphere(sink, &centre, radius);
     }
@@ -141,7 +142,7 @@ aset_status aset_procedural_mount(const aset_sink *sink, uint32_t size) {
     all.sink = sink;
     all.size = size;
     all.n_cells = (uint32_t)1 << size;
-    all.roughness = sqrt(cbrt(2.0) - 1.0);
+    all.roughness = sqrt(1.2599210498948732 - 1.0);
     status = aset_emit_setting(sink, &setting);
     if (status == ASET_OK) {
         status = spheres(sink);

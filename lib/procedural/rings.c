@@ -5,6 +5,7 @@
  * Source: E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987, and the Standard Procedural
  * Databases 3 that came of it.
  */
+#include "elementary.h"
 #include "emit.h"
 
 #include <math.h>
@@ -19,13 +20,14 @@ static void joints(emit_point result[n_joints]) {
     const double cosine = 1.0 / sqrt(5.0), sine = 2.0 / sqrt(5.0); /* of the angle between a dodecahedron's normals */
     for (int i = 0; i < n_joints; i++) {
         double corner = EMIT_RAD(72.0 * (i % n_corners));
-        double x = cos(corner) / (1.0 + TUBE), y = sin(corner) / (1.0 + TUBE);
+        double x = aset_emit_cosine(corner) / (1.0 + TUBE), y = aset_emit_sine(corner) / (1.0 + TUBE);
         if (i < n_corners) {
             result[i] = (emit_point){x, y, 0.0};
         } else {
             double azimuth = EMIT_RAD(72.0 * (i / n_corners) - 36.0);
-            result[i].x = x * cos(azimuth) - y * cosine * sin(azimuth);
-            result[i].y = x * sin(azimuth) + y * cosine * cos(azimuth);
+            double cos_a = aset_emit_cosine(azimuth), sin_a = aset_emit_sine(azimuth);
+            result[i].x = x * cos_a - y * cosine * sin_a;
+            result[i].y = x * sin_a + y * cosine * cos_a;
             result[i].z = y * sine;
         }
     }
@@ -58,7 +60,7 @@ static aset_status cluster(const aset_sink *sink, const emit_point points[n_join
 static aset_status wall(const aset_sink *sink, double layer, uint32_t n_layers) {
     static const emit_surface white = {1, 1, 1, 1, 0, EMIT_DULL, 0, 0};
     double y = layer * (n_layers + 1.0);
-    double half = 1.01 * (y + layer) * tan(EMIT_RAD(22.5));
+    double half = 1.01 * (y + layer) * aset_emit_tangent(EMIT_RAD(22.5));
     emit_point corners[4] = {{-1.0 + half, y, 0.5 + half},
                              {-1.0 - half, y, 0.5 + half},
                              {-1.0 - half, y, 0.5 - half},
@@ -80,7 +82,8 @@ static aset_status layer_of(const aset_sink *sink, const emit_point points[n_joi
 }
 
 aset_status aset_procedural_rings(const aset_sink *sink, uint32_t size) {
-    const double layer = 1.0 / sin(EMIT_RAD(22.5)); /* the distance of the layers, and of the eye from the first */
+    /* the distance of the layers, and of the eye from the first */
+    const double layer = 1.0 / aset_emit_sine(EMIT_RAD(22.5));
     const emit_point lights[] = {{3, -layer, 3}, {-4, -layer, 1}, {2, -layer, -4}};
     const emit_setting setting = {{-1, -layer, 0.5}, {-1, 1 - layer, 0.5}, {0, 0, 1}, lights, 3};
     emit_point points[n_joints];

@@ -6,9 +6,8 @@
  * Source: E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987, after M. Aono and T. L. Kunii,
  * IEEE CG&A 4(5), 1984; and the Standard Procedural Databases 3 that came of it.
  */
+#include "elementary.h"
 #include "emit.h"
-
-#include <math.h>
 
 #if ASET_WITH_POLYGONS && ASET_WITH_SPHERES && ASET_WITH_CONES
 
@@ -23,8 +22,8 @@ typedef struct frame {
 
 /* A child in its parent's frame, but for the step to the parent's tip. */
 static frame fork(double tilt_deg, double turn_deg, double shrink) {
-    double cos_a = cos(EMIT_RAD(tilt_deg)), sin_a = sin(EMIT_RAD(tilt_deg));
-    double cos_b = cos(EMIT_RAD(turn_deg)), sin_b = sin(EMIT_RAD(turn_deg));
+    double cos_a = aset_emit_cosine(EMIT_RAD(tilt_deg)), sin_a = aset_emit_sine(EMIT_RAD(tilt_deg));
+    double cos_b = aset_emit_cosine(EMIT_RAD(turn_deg)), sin_b = aset_emit_sine(EMIT_RAD(turn_deg));
     frame result;
     result.x = (emit_point){shrink * cos_b, shrink * sin_b, 0.0};
     result.y = (emit_point){-shrink * sin_b * cos_a, shrink * cos_b * cos_a, shrink * sin_a};

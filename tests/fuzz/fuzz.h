@@ -155,9 +155,12 @@ static inline void read_twice(reader load, const uint8_t *data, size_t size, uin
         sink = aset_scene_sink(&scene);
         from = source_of(data, size, choice >> 3); /* in other pieces, perhaps */
         from.fails = (choice & 4u) != 0;
-        require(load(&sink, give, &from, options, &second) == status);
-        check_report(status, &second, size);
-        check_same_report(&first, &second);
+        aset_status again = load(&sink, give, &from, options, &second);
+        check_report(again, &second, size);
+        if (status == ASET_OK || again != ASET_ERR_NOMEM) { /* what broke off in a polygon counted no place for it */
+            require(again == status);
+            check_same_report(&first, &second);
+        }
         require_same_counts(&scene.counts, &counter.counts);
     }
     close_arena(&arena);
