@@ -125,7 +125,7 @@ test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset al
 	  echo "== models.sh"; bash tests/models.sh $(BUILD)/aset $(BUILD)/tests/convert || failed="$$failed models.sh"; \
 	  echo "== bake.sh"; bash tests/bake.sh $(BUILD)/aset $(BUILD)/examples/flash "$(CC)" || failed="$$failed bake.sh"; \
 	  echo "== determinism.sh"; bash tests/determinism.sh quick $(BUILD)/tests/determinism || failed="$$failed determinism.sh"; \
-	  echo "== plan.sh"; bash tests/plan.sh $(BUILD)/aset "$(CC)" || failed="$$failed plan.sh"; \
+	  echo "== plan.sh"; CPPFLAGS="$(CPPFLAGS)" bash tests/plan.sh $(BUILD)/aset "$(CC)" || failed="$$failed plan.sh"; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi; echo "all tests passed"
 
 test-long: $(BUILD)/aset ## every method against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)

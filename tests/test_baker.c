@@ -451,6 +451,109 @@ static void test_baker__a_source_that_changes_does_no_harm(void **state) {
     }
 }
 
+/* --- sources that fail --- */
+
+/* The model's first things, a polygon that is never ended, and no more. */
+static aset_status emit_broken(const aset_sink *sink, const model *m, uint32_t n_things) {
+    model part = *m;
+    part.n_things = n_things;
+    assert_int_equal(model_emit(sink, &part), ASET_OK);
+#if ASET_WITH_POLYGONS
+    aset_vec3 point = at(1, 2, 3);
+    if (n_things > 0) {
+        assert_int_equal(sink->polygon_begin(sink->context, 3, false), ASET_OK);
+        assert_int_equal(sink->polygon_point(sink->context, &point, NULL), ASET_OK);
+    }
+#endif
+    return ASET_ERR_READ;
+}
+
+/* A baker that was given up takes nothing, makes nothing, and no longer touches the arena. */
+static void check_abandoned(aset_baker *baker, const model *m) {
+    aset_arena *arena = baker->arena;
+    size_t used = arena->used;
+    bool again = true;
+    aset_draft draft;
+    aset_sink sink = aset_baker_sink(baker);
+    assert_int_not_equal(model_emit(&sink, m), ASET_OK);
+    assert_int_equal(aset_baker_pass(baker, &again), ASET_ERR_ARGUMENT);
+    assert_false(again);
+    assert_int_equal(aset_baker_finish(&draft, baker), ASET_ERR_ARGUMENT);
+    aset_baker_abandon(baker);
+    assert_int_equal(arena->used, used);
+}
+
+/* A bake whose source fails in that pass after so many things; false: there are fewer passes, and all went well. */
+static bool bake_failing(aset_arena *arena, const model *m, int bad_pass, uint32_t n_things) {
+    aset_baker *baker = malloc(sizeof *baker);
+    aset_bake_options options = options_of(5, 4, 3);
+    aset_arena before = *arena;
+    aset_draft draft;
+    bool again = true, failed = false;
+    assert_int_equal(aset_baker_init(baker, arena, &options), ASET_OK);
+    for (int pass = 0; again && !failed; pass++) {
+        aset_sink sink = aset_baker_sink(baker);
+        failed = pass == bad_pass && emit_broken(&sink, m, n_things) != ASET_OK;
+        if (!failed) {
+            assert_int_equal(model_emit(&sink, m), ASET_OK);
+            assert_int_equal(aset_baker_pass(baker, &again), ASET_OK);
+        }
+    }
+    if (failed) {
+        aset_baker_abandon(baker);
+        check(arena->used == before.used && memcmp(arena->used_by, before.used_by, sizeof before.used_by) == 0,
+              "pass %d, %u things", bad_pass, (unsigned)n_things);
+        check_abandoned(baker, m);
+    } else {
+        assert_int_equal(aset_baker_finish(&draft, baker), ASET_OK);
+        size_t used = arena->used;
+        aset_baker_abandon(baker); /* takes nothing back that has become a draft */
+        assert_int_equal(arena->used, used);
+    }
+    free(baker);
+    return failed;
+}
+
+/* Wherever the source fails, in whatever pass, the arena is as before, and the next bake makes the same words. */
+static void test_baker__a_source_that_fails_leaves_nothing(void **state) {
+    (void)state;
+    guarded memory = guarded_open(ROOM);
+    aset_arena arena;
+    random_state r = random_start(seed_of(350));
+    model m;
+    int pass = 0;
+    model_random(&m, &r, 9, 4, 0.5, 3);
+    if (ASET_WITH_POLYGONS) {
+        model_rectangle(&m, at(-40, -40, -6), at(80, 0, 0), at(0, 80, 0)); /* is kept, so that all kinds of passes come */
+    }
+    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+    (void)aset_arena_alloc(&arena, 40, ASET_CATEGORY_SCRATCH);
+    aset_mark mark = aset_arena_mark(&arena);
+    while (bake_failing(&arena, &m, pass, 0)) {
+        aset_arena_release(&arena, &mark);
+        for (uint32_t n = 1; n <= m.n_things; n++) {
+            assert_true(bake_failing(&arena, &m, pass, n));
+        }
+        pass++;
+    }
+    assert_int_equal(pass, ASET_WITH_POLYGONS ? 3 : 2);
+    baked whole;
+    aset_draft draft;
+    aset_bake_report report;
+    aset_bake_options options = options_of(5, 4, 3);
+    bake_model(&whole, &m, &options);
+    aset_arena_release(&arena, &mark);
+    assert_int_equal(bake_all(&draft, &report, &arena, &options, model_emit, &m), ASET_OK);
+    assert_true(same_words(&draft, &whole.draft));
+    aset_baker never;
+    memset(&never, 0, sizeof never);
+    aset_baker_abandon(&never);
+    aset_baker_abandon(NULL);
+    bake_close(&whole);
+    model_free(&m);
+    guarded_close(&memory);
+}
+
 #if ASET_WITH_POLYGONS
 /* A polygon that is still open when the pass ends is forgotten; after the end nothing is taken any more. */
 static void test_baker__open_polygons_and_late_entities(void **state) {
@@ -1053,6 +1156,7 @@ int main(void) {
         cmocka_unit_test(test_baker__arguments),
         cmocka_unit_test(test_baker__bad_entities_are_refused_as_a_scene_does),
         cmocka_unit_test(test_baker__a_source_that_changes_does_no_harm),
+        cmocka_unit_test(test_baker__a_source_that_fails_leaves_nothing),
         cmocka_unit_test(test_baker__scale_does_not_matter),
         cmocka_unit_test(test_baker__models_of_hardly_any_size),
         cmocka_unit_test(test_baker__materials_of_any_size),

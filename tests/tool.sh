@@ -293,7 +293,7 @@ wrong_values() {
         --size=5x --size=x5 --size=5x5x5 --size=-5x5 --size=1000000x1000000 --samples=0 --samples=3 --samples=-4 \
         --depth=0 --depth=-1 --depth=99999999999 --rules=nonsense --rows=5 --rows=5:5 --rows=6:5 --rows=:5 --rows=-1:5 \
         --threads=0 --threads=-1 --threads=x --threads=4294967297 --from=1,2 --from=1,2,3,4 --from=nan,0,0 --at=inf,0,0 \
-        --at=1e99,0,0 --up=a,b,c --angle=0 --angle=180 --angle=-5 --angle=nan; do
+        --at=1e399,0,0 --up=a,b,c --angle=0 --angle=180 --angle=-5 --angle=nan; do
         wrong_words render "$scenes/balls.nff" "${pair%%=*}" "${pair#*=}"
     done
     for pair in 0 -1 x 99999 1.5 ""; do

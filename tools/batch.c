@@ -280,6 +280,7 @@ aset_status tool_bake(tool_baking *baking, tool_source *source, const aset_bake_
     }
     double start = tool_seconds();
     status = status == ASET_OK ? aset_baker_finish(&baking->draft, &baker) : status;
+    aset_baker_abandon(&baker);
     baking->build_s += tool_seconds() - start;
     baking->report = baker.report;
     return status;

@@ -61,7 +61,9 @@ static aset_status bake(const trade_setting *s, drawing *d) {
     while (status == ASET_OK && again) {
         status = bake_pass(d, source, &baker, &again);
     }
-    return status == ASET_OK ? aset_baker_finish(&d->draft, &baker) : status;
+    status = status == ASET_OK ? aset_baker_finish(&d->draft, &baker) : status;
+    aset_baker_abandon(&baker);
+    return status;
 }
 
 /* In the order of `aset render`. d is all zeros but for the arena. */

@@ -84,6 +84,7 @@
 #define aset_summary_build ASET_LAYOUT(aset_summary_build)
 #define aset_baker_init ASET_LAYOUT(aset_baker_init)
 #define aset_baker_sink ASET_LAYOUT(aset_baker_sink)
+#define aset_baker_abandon ASET_LAYOUT(aset_baker_abandon)
 #define aset_baker_finish ASET_LAYOUT(aset_baker_finish)
 #define aset_draft_open ASET_LAYOUT(aset_draft_open)
 #define aset_draft_texture ASET_LAYOUT(aset_draft_texture)

@@ -116,7 +116,7 @@ typedef struct aset_baker {
  *     } while (status == ASET_OK && again);
  *     status = aset_baker_finish(&draft, baker);
  *
- * The source must give the same entities each time. The first pass measures, further ones bake: two in all for most models,
+ * Where the source fails, aset_baker_abandon(baker). The source must give the same entities each time. The first pass measures, further ones bake: two in all for most models,
  * one more if objects are kept exact, and more where memory is short. options may be NULL. ASET_ERR_ARGUMENT: divisions out
  * of range.
  */
@@ -136,6 +136,12 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
  * error the arena is as before the bake.
  */
 aset_status aset_baker_pass(aset_baker *baker, bool *again);
+
+/*
+ * Gives up: the arena is as before aset_baker_init. For a source that fails within a pass, which then is not ended; at any time
+ * before aset_baker_finish, and harmless after it or after an error.
+ */
+void aset_baker_abandon(aset_baker *baker);
 
 /*
  * Makes the draft, in the arena: the words, and the stage. The result is the same, bit for bit, for every order of the objects

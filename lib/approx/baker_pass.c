@@ -308,4 +308,13 @@ aset_status aset_baker_pass(aset_baker *baker, bool *again) {
     return status;
 }
 
+void aset_baker_abandon(aset_baker *baker) {
+    if (baker == NULL || baker->arena == NULL || baker->phase == PHASE_FAILED) {
+        return; /* nothing was taken, or it is no longer ours */
+    }
+    aset_arena_release(baker->arena, &baker->mark);
+    baker->phase = PHASE_FAILED;
+    baker->failure = ASET_ERR_ARGUMENT;
+}
+
 #endif

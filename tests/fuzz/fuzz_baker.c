@@ -1,6 +1,6 @@
 /*
  * fuzz_baker.c - garbage through the baker in little memory, its words opened and drawn. First four bytes: memory, two for
- * the divisions, choices; then entities as fuzz.h reads them.
+ * the divisions, choices (a source that fails among them); then entities as fuzz.h reads them.
  */
 #include "draw.h"
 
@@ -56,13 +56,19 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         aset_sink sink = aset_baker_sink(baker);
         require(pass < PASSES_MAX);
         (void)put_entities(all, &sink, ENTITIES_MAX, &tame);
+        if ((data[3] & 32u) != 0 && pass == data[2] / 64) { /* the source has failed */
+            aset_baker_abandon(baker);
+            status = ASET_ERR_READ;
+            break;
+        }
         status = aset_baker_pass(baker, &again);
         require(status == ASET_OK || !again);
     }
     if (status == ASET_OK) {
         status = aset_baker_finish(&draft, baker);
     }
-    require(status == ASET_OK || status == ASET_ERR_NOMEM || status == ASET_ERR_GEOMETRY || status == ASET_ERR_LIMIT);
+    require(status == ASET_OK || status == ASET_ERR_NOMEM || status == ASET_ERR_GEOMETRY || status == ASET_ERR_LIMIT ||
+            status == ASET_ERR_READ);
     require(status == ASET_OK || arena.used == 0);
     require(status != ASET_ERR_NOMEM || arena.missing > 0);
     if (status == ASET_OK) {
