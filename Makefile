@@ -122,6 +122,7 @@ $(BUILD)/tests/bench_peers $(BUILD)/tests/bench_drafts: $(BUILD)/tests/%: tests/
 test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
 	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
+	  echo "== faults.sh"; bash tests/faults.sh $(BUILD)/aset || failed="$$failed faults.sh"; \
 	  echo "== models.sh"; bash tests/models.sh $(BUILD)/aset $(BUILD)/tests/convert || failed="$$failed models.sh"; \
 	  echo "== bake.sh"; bash tests/bake.sh $(BUILD)/aset $(BUILD)/examples/flash "$(CC)" || failed="$$failed bake.sh"; \
 	  echo "== determinism.sh"; bash tests/determinism.sh quick $(BUILD)/tests/determinism || failed="$$failed determinism.sh"; \
