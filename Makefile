@@ -142,6 +142,10 @@ fuzz: ## every reader, the draft, the scene and the tracer under a fuzzer, for S
 test-sanitize: ## the tests once more with the address and undefined-behaviour sanitizers
 	$(MAKE) BUILD=$(BUILD)/sanitize CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all" test
 
+coverage: ## branches of the core that the tests take (gcov); what none takes is named in tests/coverage.txt (minutes)
+	-$(MAKE) BUILD=$(BUILD)/coverage CFLAGS="-O0 --coverage" test
+	@bash tests/coverage.sh $(BUILD)/coverage
+
 test-double: ## the tests once more in double precision
 	$(MAKE) BUILD=$(BUILD)/double CPPFLAGS="-DASET_REAL_BITS=64" test
 
@@ -243,6 +247,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: coverage determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

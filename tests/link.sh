@@ -20,7 +20,7 @@ done
 # Writable data (tables of pointers that only the loader writes do not count).
 writable=$(size -A "$core" | awk '$1 ~ /^\.(data|bss)(\.|$)/ && $1 !~ /^\.data\.rel\.ro/ { n += $2 } END { print n + 0 }')
 case "$build" in
-*sanitize*) ;;
+*sanitize* | *coverage*) ;;
 *) [ "$writable" = 0 ] || { echo "link: $writable bytes of writable data in the core"; bad=1; } ;;
 esac
 
@@ -33,7 +33,7 @@ int main(void) {
 }
 END
 flags=""
-case "$build" in *sanitize*) flags="-fsanitize=address,undefined" ;; *double*) flags="-DASET_REAL_BITS=64" ;; esac
+case "$build" in *sanitize*) flags="-fsanitize=address,undefined" ;; *coverage*) flags="--coverage" ;; *double*) flags="-DASET_REAL_BITS=64" ;; esac
 # shellcheck disable=SC2086
 if ! $cc -std=c99 $flags -Iinclude "$dir/user.c" "$core" -lm -o "$dir/user" 2>"$dir/log"; then
     echo "link: a program with the library's own switches does not link:"; cat "$dir/log"; bad=1

@@ -68,10 +68,10 @@ static inline void check_answer(aset_status status, const aset_ray *ray) {
     require(status != ASET_OK || !broken_ray(ray));
 }
 
-/* t is a distance by the direction's length, so from a long direction it may come out as 0. */
+/* t is a distance by the direction's length, so along a direction longer than 1 it may come out as 0. */
 static inline void check_hit(const aset_tracer *tracer, const aset_hit *hit, const aset_ray *ray) {
     aset_vec3 d = ray->direction;
-    bool is_long = fabs((double)d.x) + fabs((double)d.y) + fabs((double)d.z) > 1e10;
+    bool is_long = fabs((double)d.x) + fabs((double)d.y) + fabs((double)d.z) > 1;
     if (!(hit->t > 0 || (hit->t == 0 && is_long))) {
         fprintf(stderr, "t %g, object %u, from %g %g %g along %g %g %g\n", (double)hit->t, (unsigned)hit->object,
                 (double)ray->origin.x, (double)ray->origin.y, (double)ray->origin.z, (double)d.x, (double)d.y, (double)d.z);
