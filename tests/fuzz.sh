@@ -54,7 +54,7 @@ run() {
     fi
     echo "$name: $(find "$seeds" -type f | wc -l) seeds pass"
     [ $fuzzer = yes ] && [ "$seconds" -gt 0 ] || return 0
-    "$dir/$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -max_len=4096 -print_final_stats=1 \
+    "$dir/$name" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=1024 -max_len=4096 -print_final_stats=1 \
         -artifact_prefix="$dir/$name-" "$dir/corpus/$name" "$seeds" >"$dir/$name.log" 2>&1 || status=1
     echo "$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$name.log") executions in $seconds s"
     if [ $status -ne 0 ]; then

@@ -887,6 +887,8 @@ interrupted() {
     set -m # or else the job would ignore SIGINT, as jobs in the background do
     echo old >a.png
     for signal in INT:130 TERM:143 HUP:129; do
+        # what this shell was started to ignore, no job of it can be made to hear
+        case $(trap -p "${signal%:*}") in *"''"*) continue ;; esac
         "$aset" render "$scenes/balls.nff" -m brute -s 400x30000 --samples 64 -j $threads -o a.png >/dev/null 2>"$err" &
         pid=$! tries=0
         until [ -n "$(find . -name '.aset*')" ]; do

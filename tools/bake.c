@@ -120,25 +120,44 @@ static aset_status bake_passes(baked *b, const request *r, tool_source *source, 
     return status;
 }
 
+/* In a block of this size, in the place of one before. *told: it has failed and said so. */
+static aset_status bake_in(baked *b, const request *r, tool_source *source, uint64_t memory, bool *told) {
+    free(b->block);
+    b->block = malloc(memory > 0 ? (size_t)memory : 1);
+    if (b->block == NULL || aset_arena_init(&b->arena, b->block, (size_t)memory) != ASET_OK) {
+        tool_error(r->model, 0, "the machine has no block of %" PRIu64 " bytes", memory);
+        *told = true;
+        return ASET_ERR_ARGUMENT;
+    }
+    return bake_passes(b, r, source, told);
+}
+
+/* The error line of a bake in too little memory. What is missing is known better with each try: so until it is enough. */
+static void tell_need(baked *b, const request *r, tool_source *source) {
+    uint64_t need = r->settings.memory;
+    bool told = false;
+    aset_status status = ASET_ERR_NOMEM;
+    while (status == ASET_ERR_NOMEM) {
+        need += b->arena.missing;
+        status = bake_in(b, r, source, need, &told);
+    }
+    if (!told) {
+        tool_error(r->model, 0, "the draft needs %" PRIu64 " bytes, has %" PRIu64, need, r->settings.memory);
+    }
+}
+
 /* False after an error line; block is to be freed either way. */
 static bool bake(baked *b, const request *r) {
     tool_source source;
-    uint64_t memory = r->settings.memory;
     bool told = false;
     memset(b, 0, sizeof *b);
     if (!tool_source_open(&source, r->model)) {
         return false;
     }
     tool_source_set(&source, &r->settings);
-    b->block = malloc(memory > 0 ? (size_t)memory : 1);
-    if (b->block == NULL || aset_arena_init(&b->arena, b->block, (size_t)memory) != ASET_OK) {
-        tool_error(r->model, 0, "the machine has no block of %" PRIu64 " bytes", memory);
-        tool_source_close(&source);
-        return false;
-    }
-    aset_status status = bake_passes(b, r, &source, &told);
+    aset_status status = bake_in(b, r, &source, r->settings.memory, &told);
     if (status == ASET_ERR_NOMEM) {
-        tool_error(r->model, 0, "the draft needs %zu bytes, has %" PRIu64, (size_t)memory + b->arena.missing, memory);
+        tell_need(b, r, &source);
     } else if (status != ASET_OK && !told) {
         tool_error(r->model, 0, "%s", aset_status_text(status));
     }

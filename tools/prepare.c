@@ -199,6 +199,32 @@ static bool take_block(prepared *p, const settings *s) {
     return true;
 }
 
+/*
+ * The error line of a draft in too little memory. What is missing is known better with each try: so until it is enough. missing:
+ * of the try before.
+ */
+static void tell_draft_need(const prepared *p, const settings *s, tool_source *source, size_t missing) {
+    settings rich = *s;
+    aset_status status = ASET_ERR_NOMEM;
+    bool told = false;
+    while (status == ASET_ERR_NOMEM) {
+        prepared more;
+        memset(&more, 0, sizeof more);
+        more.path = p->path;
+        more.is_drafted = true;
+        rich.memory += missing;
+        told = !take_block(&more, &rich);
+        status = told            ? ASET_ERR_ARGUMENT
+                 : p->is_streamed ? fill_streamed(&more, &rich, source, &told)
+                                  : fill_arena(&more, &rich, source, &p->counts, &told);
+        missing = more.arena.missing;
+        prepare_free(&more);
+    }
+    if (!told) {
+        tool_error(source->path, 0, "the draft needs %" PRIu64 " bytes, has %" PRIu64, rich.memory, s->memory);
+    }
+}
+
 static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
     aset_counter counter;
     aset_sink sink = aset_counter_sink(&counter);
@@ -219,8 +245,7 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
     aset_status status = p->is_streamed ? fill_streamed(p, s, source, &told)
                                         : fill_arena(p, s, source, &counter.counts, &told);
     if (status == ASET_ERR_NOMEM && p->is_drafted) {
-        tool_error(source->path, 0, "the draft needs %zu bytes, has %" PRIu64, (size_t)s->memory + p->arena.missing,
-                   s->memory);
+        tell_draft_need(p, s, source, p->arena.missing);
     } else if (status == ASET_ERR_NOMEM) {
         tell_need(source, s, &counter.counts);
     } else if (status != ASET_OK && !told) {

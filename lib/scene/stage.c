@@ -8,6 +8,7 @@
 
 #include "base/vec.h"
 
+#include <float.h>
 #include <string.h>
 
 /* The tangent of half the view's angle of 30 degrees. */
@@ -20,8 +21,11 @@
 #else
 #define RADIUS_LEAST R(1e-150)
 #endif
-/* Of the largest coordinate: with less, points of the stage would round to the same ones. */
-#define RADIUS_SHARE (2048 * REAL_UNIT)
+/*
+ * Of the largest coordinate: with less, points of the stage would round to the same ones; in float whatever aset_real is, for
+ * a draft's words are floats.
+ */
+#define RADIUS_SHARE R(2048 * (FLT_EPSILON / 2))
 
 typedef struct stage {
     const aset_sink *sink;
