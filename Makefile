@@ -149,6 +149,12 @@ coverage: ## branches of the core that the tests take (gcov); what none takes is
 test-double: ## the tests once more in double precision
 	$(MAKE) BUILD=$(BUILD)/double CPPFLAGS="-DASET_REAL_BITS=64" test
 
+stack: ## the deepest stack of each public call, by gcc's call graph; no recursion
+	@bash tests/stack.sh $(BUILD)/stack
+
+lint: ## cppcheck and clang-tidy, clean but for what tests/lint/known.txt explains (minutes)
+	@bash tests/lint.sh $(BUILD)/lint
+
 check-layers: ## who includes whom, as DESIGN.md says
 	@bash tests/layers.sh
 
@@ -247,6 +253,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: coverage determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

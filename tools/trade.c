@@ -55,7 +55,7 @@ static bool parse_methods(trade_words *w, const char *text) {
     enum { MAX = 16 };
     tool_word words[MAX];
     unsigned n = 0, all = 0;
-    for (; tool_methods[n] != NULL && n < MAX - 2; n++) {
+    for (; n < MAX - 2 && tool_methods[n] != NULL; n++) {
         words[n] = (tool_word){aset_method_name(tool_methods[n]), 1u << n};
         all |= 1u << n;
     }

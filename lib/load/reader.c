@@ -226,7 +226,7 @@ void aset_reader_lend(aset_reader *reader, unsigned char *block, size_t capacity
 
 aset_status aset_reader_skip_line(aset_reader *reader) {
     for (;;) {
-        int byte, last;
+        int byte = -1, last = -1;
         aset_status status = skip_to_line_end(reader, &last);
         if (status == ASET_OK) {
             status = look(reader, &byte);
@@ -245,7 +245,7 @@ aset_status aset_reader_rest(aset_reader *reader, char *text, size_t size, size_
     size_t n = 0; /* bytes so far, blanks at the end too, without which they are *length */
     *length = 0;
     for (;;) {
-        int byte, last;
+        int byte = -1, last = -1;
         aset_status status = look_text(reader, &byte);
         const bool comment = byte == reader->comment && (n == 0 || n > *length);
         if (status == ASET_OK && byte >= 0 && comment) {

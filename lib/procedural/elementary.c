@@ -66,10 +66,12 @@ double aset_emit_tangent(double rad) {
 double aset_emit_logarithm(double x) {
     const double least = 0.70710678118654752;
     int exponent = 0;
-    for (; x < least; x *= 2.0) { /* doubling and halving are exact */
+    while (x < least) { /* doubling and halving are exact */
+        x *= 2.0;
         exponent--;
     }
-    for (; x >= 2.0 * least; x /= 2.0) {
+    while (x >= 2.0 * least) {
+        x /= 2.0;
         exponent++;
     }
     double s = (x - 1.0) / (x + 1.0), s2 = s * s, series = 0.0;
