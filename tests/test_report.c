@@ -348,6 +348,54 @@ static void test_report__text(void **state) {
     subject_close(&x);
 }
 
+/* A draft in the place of space and summary; counts of the caller's own; extents that share a slice; no name at all. */
+static void test_report__drafts_and_other_parts(void **state) {
+    (void)state;
+    subject x;
+    char text[4096], json[4096];
+    subject_open(&x);
+    const aset_counts own = {.objects = 7654, .spheres = 7654};
+    x.report.counts = &own;
+    x.space.structure.merged = 4321;
+    x.report.method = NULL;
+    aset_report_text(text, sizeof text, &x.report);
+    assert_non_null(strstr(text, "7654 objects"));
+    assert_non_null(strstr(text, "4321 extents of objects share a slice"));
+    json_of(&x, json, sizeof json);
+    check_number(json, "scene.objects", 7654);
+#if ASET_WITH_DRAFTS
+    aset_draft draft;
+    memset(&draft, 0, sizeof draft);
+    draft.n[0] = 2, draft.n[1] = 3, draft.n[2] = 5;
+    draft.n_words = 100;
+    draft.n_facets = 61;
+    draft.n_textures = 9;
+    draft.stage.counts.objects = 4;
+    x.tracer.draft = &draft;
+    x.tracer.summary = NULL;
+    x.tracer.space = NULL;
+    aset_report_text(text, sizeof text, &x.report);
+    assert_non_null(strstr(text, "2 x 3 x 5 divisions, 61 of 180 cells not empty"));
+    assert_non_null(strstr(text, "from depth 2, a draft of 400 bytes, 61 facets, 4 objects kept exact"));
+    json_of(&x, json, sizeof json);
+    check_number(json, "structure.leaves", 180);
+    check_number(json, "structure.nonempty", 61);
+    check_number(json, "textures.used", 9);
+    check_text(json, "grid", "[2,3,5]");
+    check_text(json, "approx", "[\"shadow\",\"refracted\"]");
+#endif
+#if ASET_WITH_APPROXIMATION
+    x.tracer = stage_tracer(&x.s, &x.space);
+    x.tracer.approx_kinds = ASET_ALL_KINDS; /* but nothing that it could be read from */
+    json_of(&x, json, sizeof json);
+    check_text(json, "approx", "[]");
+    aset_report_text(text, sizeof text, &x.report);
+    assert_non_null(strstr(text, "nothing"));
+    assert_null(strstr(text, "textures of at most"));
+#endif
+    subject_close(&x);
+}
+
 static void test_report__every_status_has_a_sentence(void **state) {
     (void)state;
     for (int i = 0; i >= ASET_ERR_ARITHMETIC; i--) {
@@ -388,6 +436,7 @@ int main(void) {
         cmocka_unit_test(test_report__json_without_parts),
         cmocka_unit_test(test_report__buffers_of_any_size),
         cmocka_unit_test(test_report__text),
+        cmocka_unit_test(test_report__drafts_and_other_parts),
         cmocka_unit_test(test_report__every_status_has_a_sentence),
         cmocka_unit_test(test_report__statistics_add_up),
     };

@@ -726,6 +726,12 @@ static void test_scene__refuses_bad_views(void **state) {
             view = good_view();
             view.up = spoiled(view.up, k, k);
             assert_int_equal(s->view(s->context, &view), ASET_ERR_GEOMETRY);
+            view = good_view();
+            view.at = spoiled(view.at, k, k);
+            assert_int_equal(s->view(s->context, &view), ASET_ERR_GEOMETRY);
+            view = good_view();
+            view.height = bad_numbers[k];
+            assert_int_equal(s->view(s->context, &view), ASET_ERR_ARGUMENT);
         }
         view = good_view();
         view.at = view.from;

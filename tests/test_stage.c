@@ -241,6 +241,7 @@ static void test_stage__refuses(void **state) {
                        thin = options_of(ASET_UP_Y, (double)INFINITY);
     assert_int_equal(aset_stage_emit(NULL, &low, &high, &o), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_stage_emit(&sink, NULL, &high, &o), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_stage_emit(&sink, &low, NULL, &o), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_stage_emit(&sink, &high, &low, &o), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_stage_emit(&sink, &low, &nowhere, &o), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_stage_emit(&sink, &low, &end, &o), ASET_ERR_ARGUMENT);

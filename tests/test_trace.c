@@ -256,6 +256,29 @@ static void test_trace__shadows(void **state) {
         }
     }
 }
+
+#if ASET_WITH_POLYGONS
+/* A light at the very point that is seen has no direction: it adds nothing. One at the end of the numbers has. */
+static void test_trace__lights_at_the_point_and_far_away(void **state) {
+    (void)state;
+    static const double places[] = {0, 1e-20, 1e14};
+    for (size_t i = 0; i < COUNT_OF(places); i++) {
+        studio st;
+        memset(&st, 0, sizeof st);
+        model_start(&st.m);
+        model_light(&st.m, real3(0, 0, places[i]));
+        model_rectangle(&st.m, real3(-1, -1, 0), real3(2, 0, 0), real3(0, 2, 0));
+        studio_open(&st, &aset_mset, 2);
+        dvec c = colour_of(&st, real3(0, 0, 4), dvec_make(0, 0, -1));
+        check(st.statistics.primary_hit == 1 && st.statistics.shadow == (places[i] > 0), "place %g", places[i]);
+        double lit = places[i] > 0 ? 0.6 : 0.1;
+        check_colour(c, lit, lit, lit, 1e-5, "light");
+        studio_close(&st);
+    }
+}
+#else
+#define test_trace__lights_at_the_point_and_far_away test_support__not_compiled
+#endif
 #endif
 
 /* --- sides --- */
@@ -572,6 +595,7 @@ static void test_trace__queries_refuse_bad_rays(void **state) {
     assert_int_equal(aset_closest_hit(&found, &hit, &st.tracer, NULL, false, NULL), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_any_hit(NULL, &st.tracer, &good, false, NULL), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_ray_colour(NULL, &st.tracer, &good, &st.scratch, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_ray_colour(&colour, &st.tracer, NULL, &st.scratch, NULL), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_ray_colour(&colour, &st.tracer, &good, NULL, NULL), ASET_ERR_ARGUMENT);
     st.tracer.depth = SCRATCH_DEPTH + 1;
     assert_int_equal(aset_ray_colour(&colour, &st.tracer, &good, &st.scratch, NULL), ASET_ERR_ARGUMENT);
@@ -1145,6 +1169,14 @@ static void test_trace__rendering_refuses_bad_arguments(void **state) {
         bad.height = sizes[i][1];
         assert_int_equal(aset_render_rows(&tracer, &view, &bad, 0, 1, &st.scratch, NULL), ASET_ERR_ARGUMENT);
     }
+    aset_tracer many = tracer, nothing = tracer;
+    many.samples = UINT32_MAX;
+    assert_int_equal(aset_render_rows(&many, &view, &p, 0, 1, &st.scratch, NULL), ASET_ERR_ARGUMENT);
+    nothing.scene = NULL;
+    assert_int_equal(aset_render_rows(&nothing, &view, &p, 0, 1, &st.scratch, NULL), ASET_ERR_ARGUMENT);
+    nothing = tracer;
+    nothing.space = NULL;
+    assert_int_equal(aset_render_rows(&nothing, &view, &p, 0, 1, &st.scratch, NULL), ASET_ERR_ARGUMENT);
     bad = p;
     bad.pixels = NULL;
     assert_int_equal(aset_render_rows(&tracer, &view, &bad, 0, 1, &st.scratch, NULL), ASET_ERR_ARGUMENT);
@@ -1226,6 +1258,7 @@ int main(void) {
         cmocka_unit_test(test_trace__lights_share_their_intensity),
         cmocka_unit_test(test_trace__coloured_and_directional_lights),
         cmocka_unit_test(test_trace__shadows),
+        cmocka_unit_test(test_trace__lights_at_the_point_and_far_away),
 #endif
 #if ASET_WITH_POLYGONS
         cmocka_unit_test(test_trace__polygons_are_lit_on_the_side_that_is_seen),
