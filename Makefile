@@ -155,6 +155,9 @@ stack: ## the deepest stack of each public call, by gcc's call graph; no recursi
 lint: ## cppcheck and clang-tidy, clean but for what tests/lint/known.txt explains (minutes)
 	@bash tests/lint.sh $(BUILD)/lint
 
+check-long: ## both compilers, precisions, all sanitizers, valgrind, a hostile build, the extremes (hours; STEPS="fuzz memory")
+	@bash tests/check-long.sh $(BUILD)/check-long $(STEPS)
+
 check-layers: ## who includes whom, as DESIGN.md says
 	@bash tests/layers.sh
 
@@ -253,6 +256,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

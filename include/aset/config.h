@@ -49,6 +49,14 @@
 #define ASET_WITH_DRAFTS ASET_WITH_APPROXIMATION
 #endif
 
+/*
+ * 1: a build that looks for faults (make check-long): memory of the arena is filled with garbage when it is taken and when it is given
+ * back. ASET_LARGE_MAX, ASET_RECENT and ASET_READER_BUFFER may be small in it.
+ */
+#ifndef ASET_HOSTILE
+#define ASET_HOSTILE 0
+#endif
+
 #if ASET_REAL_BITS != 32 && ASET_REAL_BITS != 64
 #error "ASET_REAL_BITS is 32 (float) or 64 (double)"
 #endif

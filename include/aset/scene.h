@@ -72,7 +72,9 @@ typedef struct aset_counts {
      ASET_ROUND((size_t)(materials) * sizeof(aset_material)) + ASET_ROUND((size_t)(lights) * sizeof(aset_light)))
 
 /* Materials kept in mind while entities arrive: one equal to any of the last ASET_RECENT stored ones is not stored again. */
+#ifndef ASET_RECENT
 #define ASET_RECENT 16u
+#endif
 
 /* --- The fields of the following structs are private: they are public so that you can hold them. --- */
 

@@ -180,7 +180,9 @@ typedef struct aset_large {
     uint16_t low[3], high[3];
 } aset_large;
 
+#ifndef ASET_LARGE_MAX
 #define ASET_LARGE_MAX 16u
+#endif
 
 typedef struct aset_space {
     const aset_method *method;

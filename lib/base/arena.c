@@ -9,6 +9,17 @@
 
 #include <string.h>
 
+/* In a hostile build nobody finds zeros, nor what was there before: neither in new memory nor in what was given back. */
+static void poison(unsigned char *from, size_t bytes) {
+#if ASET_HOSTILE
+    if (bytes > 0) {
+        memset(from, 0xa5, bytes);
+    }
+#else
+    (void)from, (void)bytes;
+#endif
+}
+
 aset_status aset_arena_init(aset_arena *arena, void *block, size_t size) {
     if (arena == NULL || (block == NULL && size > 0) || (uintptr_t)block % ASET_ALIGN != 0) {
         return ASET_ERR_ARGUMENT;
@@ -41,6 +52,7 @@ void *aset_arena_alloc(aset_arena *arena, size_t bytes, aset_category category) 
         return NULL;
     }
     void *start = arena->block != NULL ? arena->block + arena->used : NULL; /* no block: no bytes were asked for */
+    poison(start, rounded);
     arena->used += rounded;
     arena->used_by[category] += rounded;
     if (arena->used > arena->peak) {
@@ -60,6 +72,9 @@ aset_mark aset_arena_mark(const aset_arena *arena) {
 }
 
 void aset_arena_release(aset_arena *arena, const aset_mark *mark) {
+    if (arena->used > mark->used) {
+        poison(arena->block + mark->used, arena->used - mark->used);
+    }
     arena->used = mark->used;
     memcpy(arena->used_by, mark->used_by, sizeof arena->used_by);
 }
