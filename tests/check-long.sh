@@ -57,12 +57,25 @@ step_sanitize() {
     done
 }
 
-# A program of the library's sources and one of the tests': NAME BITS FILES, the flags before
+# The libraries, compiled once for a step and a precision: BITS, the compiler and its flags before
+libraries() {
+    local dir=$build/$step-$1 source
+    rm -rf "$dir" && mkdir -p "$dir" || exit 1
+    for source in "$here"/../lib/*/*.c; do
+        # shellcheck disable=SC2086
+        $flags -std=c99 -ffp-contract=off -DASET_REAL_BITS="$1" -I"$here/../include" -I"$here/../lib" -c "$source" \
+            -o "$dir/$(basename "$(dirname "$source")")_$(basename "$source" .c).o" >"$dir/log" 2>&1 ||
+            { say "$source does not compile: $(grep -m 1 error "$dir/log")"; failed=1; return 1; }
+    done
+}
+
+# A program of these and one of the tests': NAME BITS FILES
 compile() {
     local name=$1 bits=$2
     shift 2
+    [ -d "$build/$step-$bits" ] || libraries "$bits" || return 1
     # shellcheck disable=SC2086
-    $flags -std=c99 -ffp-contract=off -DASET_REAL_BITS="$bits" -I"$here/../include" -I"$here/../lib" "$@" "$here"/../lib/*/*.c -lm \
+    $flags -std=c99 -ffp-contract=off -DASET_REAL_BITS="$bits" -I"$here/../include" -I"$here/../lib" "$@" "$build/$step-$bits"/*.o -lm \
         -o "$build/$name" >"$build/$name.log" 2>&1 || { say "$name: does not compile"; failed=1; return 1; }
 }
 
@@ -140,6 +153,7 @@ step_extremes() {
 }
 
 for step in $steps; do
+    rm -rf "$build/$step-32" "$build/$step-64"
     step_$step || failed=1
 done
 [ $failed = 0 ] && echo "check-long: all of it passes" || echo "check-long: FAILED"

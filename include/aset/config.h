@@ -50,8 +50,8 @@
 #endif
 
 /*
- * 1: a build that looks for faults (make check-long): memory of the arena is filled with garbage when it is taken and when it is given
- * back. ASET_LARGE_MAX, ASET_RECENT and ASET_READER_BUFFER may be small in it.
+ * 1: a build that looks for faults (make check-long): the arena's block is filled with garbage at the start, and what is given back
+ * again. ASET_LARGE_MAX, ASET_RECENT and ASET_READER_BUFFER may be small in it.
  */
 #ifndef ASET_HOSTILE
 #define ASET_HOSTILE 0

@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-/* In a hostile build nobody finds zeros, nor what was there before: neither in new memory nor in what was given back. */
+/* In a hostile build nobody finds zeros in new memory, nor what was there before in memory given back. */
 static void poison(unsigned char *from, size_t bytes) {
 #if ASET_HOSTILE
     if (bytes > 0) {
@@ -30,6 +30,7 @@ aset_status aset_arena_init(aset_arena *arena, void *block, size_t size) {
     memset(arena, 0, sizeof *arena);
     arena->block = block;
     arena->size = size;
+    poison(block, size);
     return ASET_OK;
 }
 
@@ -52,7 +53,6 @@ void *aset_arena_alloc(aset_arena *arena, size_t bytes, aset_category category) 
         return NULL;
     }
     void *start = arena->block != NULL ? arena->block + arena->used : NULL; /* no block: no bytes were asked for */
-    poison(start, rounded);
     arena->used += rounded;
     arena->used_by[category] += rounded;
     if (arena->used > arena->peak) {
