@@ -128,7 +128,7 @@ step_memory() {
 
 # The limits change what is counted, so only that is compared which the tests themselves compare; pictures with usual ones.
 step_hostile() {
-    local tiny="-DASET_HOSTILE=1 -DASET_LARGE_MAX=1 -DASET_RECENT=1 -DASET_READER_BUFFER=2"
+    local tiny="-DASET_HOSTILE=1 -DASET_LARGE_MAX=1 -DASET_RECENT=2 -DASET_READER_BUFFER=2"
     local flags="cc -O1 -g -DASET_HOSTILE=1"
     unit_tests hostile cc "$tiny" "-O1 -g"
     unit_tests hostile-double cc "$tiny -DASET_REAL_BITS=64" "-O1 -g"
