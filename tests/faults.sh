@@ -23,11 +23,15 @@ done
 
 # ---- signals ----
 
-# Runs the words, ends them by the signal after a while. They were done by then, or that is how they ended; n_cut counts the latter.
-n_cut=0
+# Runs the words, ends them by a signal after a while. They were done by then, or that is how they ended; n_cut counts the latter.
+# The signals take turns, but what this shell was started to ignore no job of it can be made to hear.
+n_cut=0 n_runs=0
+case $(trap -p INT) in *"''"*) signals="TERM TERM" ;; *) signals="INT TERM" ;; esac
 ended_by() {
-    local signal=$1 delay=$2 pid expected
-    shift 2
+    local delay=$1 pid expected signal
+    shift
+    n_runs=$((n_runs + 1))
+    signal=$([ $((n_runs % 2)) = 1 ] && echo "${signals% *}" || echo "${signals#* }")
     case $signal in INT) expected=130 ;; TERM) expected=143 ;; esac
     set -m # or else the job would ignore SIGINT, as jobs in the background do
     "$aset" "$@" >/dev/null 2>"$err" &
@@ -44,17 +48,16 @@ ended_by() {
 
 # A command with one output, which begins as an old one: whole afterwards, or still the old one. $1: the output; then the words.
 one_output_interrupted() {
-    local output=$1 k=0 delay signal
+    local output=$1 delay
     shift
     works "$@" -o "full.$output"
-    for delay in 0.003 0.01 0.02 0.05 0.1 0.2; do
-        signal=$([ $((k++ % 2)) = 0 ] && echo INT || echo TERM)
+    for delay in 0 0.003 0.01 0.02 0.05 0.1; do
         echo old >"$output"
-        ended_by $signal $delay "$@" -o "$output"
+        ended_by $delay "$@" -o "$output"
         if [ $status -eq 0 ]; then
             same "$output" "full.$output" "$*: done, but another file"
         elif [ "$(cat "$output")" != old ]; then # the signal came between the last byte and the end
-            same "$output" "full.$output" "aset $*, $signal after $delay s: part of a file"
+            same "$output" "full.$output" "aset $*, ended after $delay s: part of a file"
         fi
         [ "$(ls -A | tr '\n' ' ')" = "$(printf '%s\n' "$output" "full.$output" | sort | tr '\n' ' ')" ] || fail "left $(ls -A)"
     done
@@ -62,7 +65,7 @@ one_output_interrupted() {
 }
 
 scene_interrupted() {
-    one_output_interrupted a.nff scene balls --size 5
+    one_output_interrupted a.nff scene balls --size 6
 }
 
 bake_interrupted() {
@@ -75,11 +78,11 @@ render_interrupted() {
 
 # Every thumbnail that is there is whole.
 thumb_interrupted() {
-    local delay k=0 picture
+    local delay picture
     works thumb "$scenes/models" -o full -s 64 --quiet
-    for delay in 0.005 0.02 0.05 0.1 0.2; do
+    for delay in 0 0.005 0.02 0.05 0.1; do
         rm -rf some
-        ended_by "$([ $((k++ % 2)) = 0 ] && echo INT || echo TERM)" $delay thumb "$scenes/models" -o some -s 64 --quiet
+        ended_by $delay thumb "$scenes/models" -o some -s 64 --quiet
         for picture in some/*; do
             [ ! -e "$picture" ] || same "$picture" "full/${picture#some/}" "$picture is not whole"
         done
@@ -89,10 +92,10 @@ thumb_interrupted() {
 
 # No table and no page before their time; what was measured is kept, and the same words go on from there.
 trade_interrupted() {
-    local delay k=0 words="trade $scenes/models/balls.nff -o t -m mset --grids 8 -s 20x20 --rounds 30 --quiet"
-    for delay in 0.02 0.1 0.2; do
+    local delay words="trade $scenes/models/balls.nff -o t -m mset --grids 8 -s 20x20 --rounds 30 --quiet"
+    for delay in 0 0.02 0.1 0.2; do
         # shellcheck disable=SC2086
-        ended_by "$([ $((k++ % 2)) = 0 ] && echo INT || echo TERM)" $delay $words
+        ended_by $delay $words
         if [ $status -ne 0 ]; then
             [ ! -e t/trade.csv ] || [ -s t/trade.html ] || [ "$(wc -l <t/trade.csv)" -eq 12 ] || fail "half a table"
             for picture in t/*.png; do

@@ -1378,6 +1378,43 @@ static void test_methods__coincident_spheres(void **state) {
     model_free(&m);
 }
 
+/* Straight at the scene from ever farther away, to the largest number there is: every method sees what brute force sees. */
+static void test_methods__rays_from_the_end_of_the_numbers(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(640));
+    model m;
+    stage s;
+    aset_space brute;
+    uint64_t hits = 0, rays = 0;
+    model_random(&m, &r, 30, 1, 0.2, 0.8);
+    stage_open_model(&s, &m, ROOM);
+    stage_space(&s, &brute, &aset_brute, 1, 1, 1);
+    aset_tracer a = stage_tracer(&s, &brute);
+    for (size_t f = SET; f < METHODS; f++) {
+        aset_space space;
+        aset_mark mark = aset_arena_mark(&s.arena);
+        build_option(&space, &s, families + f, 0);
+        aset_tracer b = stage_tracer(&s, &space);
+        for (aset_real away = 1000; away < REAL_MAX / 100; away *= 30) {
+            for (int i = 0; i < 12; i++) {
+                aset_ray ray = {random_in_cube(&r, 0.8), {0, 0, 0}, REAL_INFINITY};
+                bool found = false, down = random_chance(&r, 0.5);
+                set_axis(&ray.origin, i % 3, down ? away : -away);
+                aset_real length = (aset_real)random_between(&r, 1, 3); /* so a unit length that is off by a rounding, often */
+                set_axis(&ray.direction, i % 3, down ? -length : length);
+                set_axis(&ray.direction, (i + 1) % 3, i < 6 ? 0 : REAL_LEAST / 16); /* which moves it nowhere */
+                check(same_closest(&a, &b, &ray, &found), "%s, " SEED ", from %g", families[f].name, r.seed, (double)away);
+                hits += found;
+                rays++;
+            }
+        }
+        aset_arena_release(&s.arena, &mark);
+    }
+    assert_true(hits > rays / 4);
+    stage_close(&s);
+    model_free(&m);
+}
+
 static void test_methods__one_object_a_million_times_larger(void **state) {
     (void)state;
     random_state r = random_start(seed_of(650));
@@ -1708,6 +1745,7 @@ int main(void) {
 #endif
 #if ASET_WITH_SPHERES
         cmocka_unit_test(test_methods__coincident_spheres),
+        cmocka_unit_test(test_methods__rays_from_the_end_of_the_numbers),
         cmocka_unit_test(test_methods__one_object_a_million_times_larger),
 #endif
 #if ASET_WITH_APPROXIMATION

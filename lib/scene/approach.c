@@ -6,7 +6,12 @@
 
 /* Where a ray from outside is made to start: this part of the scene's size before the box. */
 #define NEAR R(0.0625)
-#define APPROACHES 4
+/* A move leaves an origin off by 2^-24 (2^-53) of the way it had: so many lead here from the end of the numbers to the least. */
+#if ASET_REAL_BITS == 32
+#define APPROACHES 12
+#else
+#define APPROACHES 40
+#endif
 
 /* The larger of an origin's distances to both sides of a box, on one axis. */
 static inline aset_real farther(aset_real low, aset_real high, aset_real origin) {
