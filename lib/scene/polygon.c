@@ -116,22 +116,28 @@ static inline unsigned edge_crosses(const framed *p, const framed *q) {
     return low->x * high->y - low->y * high->x > 0;
 }
 
-/* Three points: their own distances, weighted, so that t never leaves the triangle. */
+/* Where a ray that is known to cross is made to hit: t within the corners' own, which rounding must not take away from it. */
+static aset_real between_corners(aset_real t, aset_real a, aset_real b, aset_real c) {
+    aset_real low = real_min(a, real_min(b, c)), high = real_max(a, real_max(b, c));
+    return t > high ? high : t >= low ? t : low; /* low also for what is no number: the ray runs in the plane */
+}
+
+/*
+ * Three points. The plane's distance, as of more points, and not the corners' distances weighted by u, v and w (Woop, Benthin and
+ * Wald): seen edge-on these are what is left of two nearly equal products, and the hit may be anywhere in the triangle.
+ */
 static aset_real triangle_nearest(const aset_real *points, unsigned stride, const probe *ray) {
     framed a = frame(points, ray), b = frame(points + stride, ray), c = frame(points + 2 * stride, ray);
     if (((edge_crosses(&a, &b) + edge_crosses(&b, &c) + edge_crosses(&c, &a)) & 1) == 0) {
         return REAL_INFINITY;
     }
-    if (!(vec_largest(polygon_area(points, 3, stride)) > 0)) {
+    aset_vec3 normal = vec_unit(polygon_area(points, 3, stride));
+    if (!(vec_largest(normal) > 0)) {
         return REAL_INFINITY; /* on one line: what crossed are rounding errors */
     }
-    aset_real u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;
-    aset_real det = u + v + w;
-    if (det == 0) {
-        return REAL_INFINITY;
-    }
-    aset_real part = 1 / det; /* weights first: the products below have the size of the scene, not its cube */
-    return (u * part * a.z + v * part * b.z + w * part * c.z) * ray->shear[2];
+    aset_vec3 first = vec(points[0], points[1], points[2]);
+    aset_real t = vec_dot(normal, vec_sub(first, probe_origin(ray))) / vec_dot(normal, probe_direction(ray));
+    return between_corners(t, a.z * ray->shear[2], b.z * ray->shear[2], c.z * ray->shear[2]);
 }
 
 /* More points: the plane's distance first, since half of all planes lie behind the ray. */

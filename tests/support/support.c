@@ -7,6 +7,11 @@
 
 #define PI 3.14159265358979323846
 
+bool long_run(void) {
+    const char *text = getenv("ASET_LONG");
+    return text != NULL && text[0] != 0 && strcmp(text, "0") != 0;
+}
+
 /* --- random numbers --- */
 
 uint64_t seed_of(uint64_t number) {

@@ -36,6 +36,9 @@
 #define SEED "seed %" PRIu64
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
 
+/* Long runs were asked for (ASET_LONG=1 in the environment), the full counts of what is promised: `make check-extremes`. */
+bool long_run(void);
+
 /* --- random numbers (splitmix64, Steele, Lea and Flood 2014) --- */
 
 typedef struct random_state {
