@@ -132,6 +132,11 @@ test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset al
 test-long: $(BUILD)/aset ## every method against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)
 	bash tests/long.sh $(BUILD)/aset $(BUILD)/long
 
+EXTREMES := test_tight test_self
+check-extremes: $(addprefix $(BUILD)/tests/,$(EXTREMES)) ## geometry at its worst, with all the rays promised (minutes)
+	@failed=; for t in $(EXTREMES); do echo "== $$t"; ASET_LONG=1 $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
+	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi
+
 determinism: $(BUILD)/aset ## golden hashes of pictures and counts, for every compiler and machine that can be built and run here
 	bash tests/determinism.sh all $(BUILD)/aset $(BUILD)/determinism
 
@@ -256,6 +261,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:
