@@ -122,7 +122,7 @@ typedef struct aset_baker {
  */
 aset_status aset_baker_init(aset_baker *baker, aset_arena *arena, const aset_bake_options *options);
 
-/* Its functions check entities as a scene's do and answer alike. */
+/* Its functions check entities as a scene's do and answer alike; but coordinates end at 10^15 here, in double too. */
 aset_sink aset_baker_sink(aset_baker *baker);
 
 #if ASET_WITH_POLYGONS

@@ -115,6 +115,9 @@ typedef struct aset_scene {
     aset_view view;
     bool has_view;
     uint32_t n_uncoloured; /* lights without a colour of their own */
+    aset_real largest; /* coordinate or radius, without its sign */
+    aset_real scale;   /* a power of two, 1 unless largest is very large or small: coordinates, and the three fields below, are
+                          kept times this */
     aset_real margin; /* by which the boxes of objects are grown against rounding */
     aset_vec3 low, high;
     aset_outline outline;
@@ -135,7 +138,7 @@ aset_status aset_scene_init(aset_scene *scene, aset_arena *arena, const aset_cou
 
 /*
  * A sink that adds to the scene. Its functions return ASET_ERR_NOMEM where an entity exceeds the limits, ASET_ERR_GEOMETRY
- * for coordinates that are not finite or beyond 10^15 (10^150 in double), polygons of fewer than 3 points or of other than
+ * for coordinates that are not finite or beyond 10^30 (10^300 in double), polygons of fewer than 3 points or of other than
  * the announced number, spheres of radius 0, cones without length, without any radius or with radii of different sign, and
  * ASET_ERR_ARGUMENT for an object before any material; the scene then is as before that entity. A polygon without area is
  * kept, and no ray hits it.

@@ -9,8 +9,13 @@
 #include "scene/entity.h"
 #include "scene/shape.h"
 
-/* What the library takes as coordinates at all; anything else goes the way that refuses it. */
+/* What the cells take as coordinates: so that squares of lengths, in the words' floats too, stay within the range of numbers. */
 #define COORDINATE_MAX R(1e15)
+
+static aset_status check_box(aset_vec3 low, aset_vec3 high) {
+    bool fits = vec_largest(low) <= COORDINATE_MAX && vec_largest(high) <= COORDINATE_MAX;
+    return fits ? ASET_OK : ASET_ERR_GEOMETRY;
+}
 
 static inline bool is_kept(const aset_baker *b, aset_vec3 low, aset_vec3 high, uint32_t n_points) {
     aset_vec3 d = vec_sub(high, low);
@@ -141,6 +146,7 @@ static aset_status take_polygon_end(void *context) {
     aset_outline *outline = &b->counter.outline;
     uint32_t n = outline->n_announced;
     aset_status status = outline_end(outline);
+    status = status == ASET_OK ? check_box(outline->low, outline->high) : status;
     if (status != ASET_OK) {
         return status;
     }
@@ -259,6 +265,10 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
     aset_vec3 low, high;
     aset_real at[ASET_COORDINATES_SPHERE] = {centre->x, centre->y, centre->z, radius};
     sphere_bounds(at, &low, &high);
+    status = check_box(low, high);
+    if (status != ASET_OK) {
+        return status;
+    }
     if (b->phase == PHASE_MEASURE) {
         measure(b, low, high, 1);
     } else if (is_kept(b, low, high, 1)) {
@@ -284,6 +294,10 @@ static aset_status take_cone(void *context, const aset_vec3 *base, aset_real bas
     aset_vec3 low, high;
     aset_real at[ASET_COORDINATES_CONE] = {base->x, base->y, base->z, base_radius, apex->x, apex->y, apex->z, apex_radius};
     cone_bounds(at, &low, &high);
+    status = check_box(low, high);
+    if (status != ASET_OK) {
+        return status;
+    }
     if (b->phase == PHASE_MEASURE) {
         measure(b, low, high, 1);
     } else if (is_kept(b, low, high, 1)) {

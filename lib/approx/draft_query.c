@@ -15,16 +15,18 @@ aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 or
                            aset_statistics *statistics) {
     const aset_scene *stage = &draft->stage;
     probe ray;
-    aset_real best = t_max;
     if (stage->counts.objects == 0) {
-        return best;
+        return t_max;
     }
+    aset_real best = t_max * stage->scale;
+    bool found = false;
     aset_real moved = approach_ready(&ray, stage, origin, direction);
     for (uint32_t i = 0; i < stage->counts.objects; i++) {
         aset_real t = object_nearest(stage, i, &ray, best - moved);
         statistics->tests++;
         if (t + moved < best) {
             statistics->test_hits++;
+            found = true;
             best = t + moved;
             hit->object = i;
             hit->t_near = t;
@@ -36,7 +38,11 @@ aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 or
     hit->by = &draft_answers;
     hit->cell = 0;
     hit->curtailed = false;
-    return best;
+    if (!found) {
+        return t_max;
+    }
+    answers_to_caller(hit, stage);
+    return hit->t;
 }
 
 uint32_t draft_query_layers(query_hit *hits, const draft_layer *met, uint32_t n, aset_vec3 origin, const query_hit *kept,
@@ -91,7 +97,7 @@ static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 dir
 
 static void draft_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit) {
     if (hit->object != ASET_NO_OBJECT) {
-        object_normals(hit->scene, hit->object, surface->point, &surface->normal, &surface->geometric);
+        object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal, &surface->geometric);
         surface->material = shape_of(hit->scene, hit->object).material;
         return;
     }

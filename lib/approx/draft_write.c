@@ -322,7 +322,7 @@ static uint32_t write_object(uint32_t *w, const aset_scene *stage, uint32_t obje
     w[0] = s.kind | (is_outline ? n / (s.kind == KIND_PATCH ? 6 : 3) : 0) << 8 | (s.material->one_sided ? 1u : 0u) << 31;
     write_material(w + 1, s.material);
     for (uint32_t k = 0; k < n; k++) {
-        w[KEPT_HEAD_WORDS + k] = word_of_float(s.at[s.n - n + k]);
+        w[KEPT_HEAD_WORDS + k] = word_of_float(s.at[s.n - n + k] / stage->scale);
     }
     return KEPT_HEAD_WORDS + n;
 }
@@ -458,6 +458,7 @@ static uint32_t *take_words(aset_baker *b, size_t n_words) {
  */
 static aset_status read_again(aset_scene *stage, const aset_draft *draft, const aset_scene *given) {
     memset(stage, 0, sizeof *stage);
+    stage->scale = 1;
     stage->limits = given->limits;
     stage->objects = given->objects;
     stage->coordinates = given->coordinates;

@@ -79,18 +79,20 @@ static void walk_probe(probe *ray, aset_vec3 origin, aset_vec3 direction) {
 static uint32_t summary_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                              aset_statistics *statistics) {
     probe ray;
-    walk_probe(&ray, origin, direction);
-    aset_real moved = approach_entered(tracer->scene, origin) ? 0 : approach_move(&ray, tracer->scene);
+    aset_vec3 start = approach_origin(tracer->scene, origin);
+    walk_probe(&ray, start, direction);
+    aset_real moved = approach_entered(tracer->scene, start) ? 0 : approach_move(&ray, tracer->scene);
     hit->near = probe_origin(&ray);
     hit->cover = 1;
     hit->scene = NULL;
     hit->by = &summary_answers;
-    if (!approximate_hit(hit, tracer, &ray, moved, t_max, statistics)) {
+    if (!approximate_hit(hit, tracer, &ray, moved, t_max * tracer->scene->scale, statistics)) {
         return 0;
     }
     hit->t_near = hit->t;
     hit->t += moved;
     hit->curtailed = trapped(tracer, hit->t);
+    answers_to_caller(hit, tracer->scene);
     statistics->curtailed += hit->curtailed;
     statistics->approx_hits += !hit->curtailed;
     return !hit->curtailed;

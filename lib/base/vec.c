@@ -1,6 +1,6 @@
 /*
  * vec.c - lengths and directions of vectors of any size: where the square of a component could leave the range of numbers,
- * the vector is scaled by its largest component first.
+ * the vector is scaled by a power of two first. So a vector times a power of two has the same direction, bit for bit.
  */
 #include "base/vec.h"
 
@@ -8,27 +8,55 @@
 #define SQUARE_MIN R(1e-24)
 #define SQUARE_MAX R(1e24)
 
+/* Components between LEAST and MOST have squares in that range; one step brings the others in, or near. */
+#define LEAST R(1e-11)
+#define MOST R(1e11)
+#if ASET_REAL_BITS == 32
+#define STEP R(0x1p40)
+#else
+#define STEP R(0x1p72)
+#endif
+
+/* a times STEP to the power of *steps; a is not 0. From the ends of the range, denormals too, at most 15 steps. */
+static aset_vec3 in_range(aset_vec3 a, int *steps) {
+    aset_real largest = vec_largest(a);
+    for (; largest < LEAST; largest *= STEP, ++*steps) {
+        a = vec_scale(a, STEP);
+    }
+    for (; largest > MOST && largest <= REAL_MAX; largest *= 1 / STEP, --*steps) {
+        a = vec_scale(a, 1 / STEP);
+    }
+    return a;
+}
+
 aset_real vec_length(aset_vec3 a) {
     aset_real square = vec_dot(a, a);
     if (square > SQUARE_MIN && square < SQUARE_MAX) {
         return real_sqrt(square);
     }
-    aset_real largest = vec_largest(a);
-    if (!(largest > 0)) {
+    if (!(vec_largest(a) > 0)) {
         return 0;
     }
-    aset_vec3 s = vec(a.x / largest, a.y / largest, a.z / largest);
-    return largest * real_sqrt(vec_dot(s, s));
+    int steps = 0;
+    a = in_range(a, &steps);
+    aset_real length = real_sqrt(vec_dot(a, a));
+    for (; steps > 0; steps--) {
+        length *= 1 / STEP;
+    }
+    for (; steps < 0; steps++) {
+        length *= STEP;
+    }
+    return length;
 }
 
 aset_vec3 vec_unit(aset_vec3 a) {
     aset_real square = vec_dot(a, a);
     if (!(square > SQUARE_MIN && square < SQUARE_MAX)) {
-        aset_real largest = vec_largest(a);
-        if (!(largest > 0)) {
+        if (!(vec_largest(a) > 0)) {
             return vec(0, 0, 0);
         }
-        a = vec(a.x / largest, a.y / largest, a.z / largest);
+        int steps = 0;
+        a = in_range(a, &steps);
         square = vec_dot(a, a);
     }
     return vec_scale(a, 1 / real_sqrt(square));

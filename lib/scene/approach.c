@@ -64,7 +64,14 @@ aset_real approach_move(probe *ray, const aset_scene *scene) {
     return moved;
 }
 
+aset_vec3 approach_origin(const aset_scene *scene, aset_vec3 origin) {
+    const aset_real end = REAL_MAX / 4;
+    aset_vec3 end_3 = vec(end, end, end);
+    return scene->scale == 1 ? origin : vec_max(vec_scale(end_3, -1), vec_min(end_3, scene_point(scene, origin)));
+}
+
 aset_real approach_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
+    origin = approach_origin(scene, origin);
     *ray = probe_make(origin, direction);
     return approach_entered(scene, origin) ? 0 : approach_move(ray, scene);
 }

@@ -15,10 +15,13 @@ static inline bool approach_entered(const aset_scene *scene, aset_vec3 origin) {
            origin.y <= high.y + grown && origin.z >= low.z - grown && origin.z <= high.z + grown;
 }
 
+/* A ray's origin in the scene's own lengths; from so far that these have no number for it, at the end of their range. */
+aset_vec3 approach_origin(const aset_scene *scene, aset_vec3 origin);
+
 /* Moves a ray from outside near the scene. By how much. */
 aset_real approach_move(probe *ray, const aset_scene *scene);
 
-/* Makes a ray of unit direction ready; from outside it is moved near the scene. By how much. */
+/* Makes a ray of unit direction ready, in the scene's own lengths; from outside it is moved near the scene. By how much. */
 aset_real approach_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction);
 
 /* t_max as the moved ray counts it, and the rounding of that. */

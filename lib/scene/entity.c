@@ -2,13 +2,13 @@
 #include "scene/entity.h"
 
 /*
- * Where a point may be: so that products of two differences, the most that anything computes, stay within the range of
- * numbers.
+ * Where a point may be: so that sums and differences of a few, which are all that is computed before a scene is scaled (scene.c),
+ * stay within the range of numbers.
  */
 #if ASET_REAL_BITS == 32
-#define COORDINATE_MAX R(1e15)
+#define COORDINATE_MAX R(1e30)
 #else
-#define COORDINATE_MAX R(1e150)
+#define COORDINATE_MAX R(1e300)
 #endif
 
 static bool is_place(aset_vec3 p) {

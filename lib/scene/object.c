@@ -48,7 +48,7 @@ bool probe_box(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real *t_in,
     return in <= out;
 }
 
-void aset_object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high) {
+void object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high) {
     shape s = shape_of(scene, object);
     switch (s.kind) {
 #if ASET_WITH_POLYGONS
@@ -66,6 +66,12 @@ void aset_object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low
     default: break;
     }
     *low = *high = vec(0, 0, 0); /* no other kind is ever stored */
+}
+
+void aset_object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high) {
+    object_bounds(scene, object, low, high);
+    *low = vec_scale(*low, 1 / scene->scale);
+    *high = vec_scale(*high, 1 / scene->scale);
 }
 
 aset_real object_margin(aset_vec3 low, aset_vec3 high) {
@@ -100,7 +106,7 @@ aset_real object_nearest(const aset_scene *scene, uint32_t object, const probe *
         return REAL_INFINITY;
     }
     aset_vec3 low, high, margin;
-    aset_object_bounds(scene, object, &low, &high);
+    object_bounds(scene, object, &low, &high);
     aset_real m = scene->margin, t_in, t_out;
     margin = vec(m, m, m);
     if (!probe_box(ray, vec_sub(low, margin), vec_add(high, margin), &t_in, &t_out)) {

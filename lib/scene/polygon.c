@@ -70,6 +70,17 @@ void polygon_finish(aset_real *at, uint32_t n, unsigned stride, aset_vec3 low, a
     }
 }
 
+void polygon_scale(aset_real *at, uint32_t n, unsigned stride, aset_real factor) {
+    uint32_t n_points;
+    aset_real *points = at + (points_of(at, n, stride, &n_points) - at);
+    for (uint32_t i = 0; n_points >= BOXED_FROM && i < 6; i++) {
+        at[3 + i] *= factor;
+    }
+    for (uint32_t i = 0; i < n_points; i++, points += stride) {
+        put_vec(points, vec_scale(vec(points[0], points[1], points[2]), factor));
+    }
+}
+
 void polygon_bounds(const aset_real *at, uint32_t n, unsigned stride, aset_vec3 *low, aset_vec3 *high) {
     uint32_t n_points;
     const aset_real *p = points_of(at, n, stride, &n_points);

@@ -6,6 +6,11 @@
  *   materials    each distinct one (within the last ASET_RECENT) once
  *   lights
  *
+ * Coordinates are kept times scene->scale, a power of two: 1 for any ordinary scene, else such that the largest is between 2^-24
+ * and 2^48 (in double 2^-192 and 2^384), where products of two differences of coordinates neither overflow nor lose bits to
+ * underflow, nor do the products of these and a length. So a scene multiplied by a power of two gives the same picture, bit for
+ * bit. As objects come one by one, the scale is changed when the first one comes that is out of its range, twice at the most.
+ *
  * Invariant: counts never exceed limits, and an entity is counted only when it is complete; what an abandoned polygon wrote
  * lies behind the counted coordinates.
  */
@@ -13,6 +18,60 @@
 #include "scene/shape.h"
 
 #include <string.h>
+
+/* Above SCALE_HIGH lengths are kept times SCALE_DOWN, below SCALE_LOW times its inverse. */
+#if ASET_REAL_BITS == 32
+#define SCALE_LOW R(0x1p-24)
+#define SCALE_HIGH R(0x1p48)
+#define SCALE_DOWN R(0x1p-72)
+#else
+#define SCALE_LOW R(0x1p-192)
+#define SCALE_HIGH R(0x1p384)
+#define SCALE_DOWN R(0x1p-576)
+#endif
+
+aset_real scene_scale_for(aset_real largest) {
+    if (largest >= SCALE_HIGH) {
+        return SCALE_DOWN;
+    }
+    return largest >= SCALE_LOW || largest == 0 ? 1 : 1 / SCALE_DOWN;
+}
+
+static void scale_object(aset_scene *scene, uint32_t object, aset_real factor) {
+    shape s = shape_of(scene, object);
+    aset_real *at = scene->coordinates + scene->objects[object].first;
+#if ASET_WITH_POLYGONS
+    if (s.kind == KIND_POLYGON || s.kind == KIND_PATCH) {
+        polygon_scale(at, s.n, s.kind == KIND_PATCH ? 6 : 3, factor);
+        return;
+    }
+#endif
+    for (uint32_t i = 0; i < s.n; i++) {
+        at[i] *= factor;
+    }
+}
+
+static void scale_outline(aset_scene *scene, aset_real factor);
+
+/* Makes the scene ready for a coordinate of this size, before it is stored. */
+static void make_range(aset_scene *scene, aset_real largest) {
+    if (!(largest > scene->largest)) {
+        return;
+    }
+    aset_real wanted = scene_scale_for(largest);
+    scene->largest = largest;
+    while (scene->scale != wanted) {
+        aset_real factor = wanted < scene->scale ? SCALE_DOWN : 1 / SCALE_DOWN;
+        for (uint32_t i = 0; i < scene->counts.objects; i++) {
+            scale_object(scene, i, factor);
+        }
+        scale_outline(scene, factor);
+        scene->low = vec_scale(scene->low, factor);
+        scene->high = vec_scale(scene->high, factor);
+        scene->margin = object_margin(scene->low, scene->high);
+        scene->scale *= factor;
+    }
+}
 
 static aset_status take_background(void *context, const aset_colour *colour) {
     aset_scene *scene = context;
@@ -93,7 +152,7 @@ static void finish_object(aset_scene *scene, unsigned kind, uint64_t coordinates
     object->kind_material = scene->recent.current << KIND_BITS | kind;
     scene->counts.coordinates += coordinates;
     scene->counts.objects++;
-    aset_object_bounds(scene, scene->counts.objects - 1, &low, &high);
+    object_bounds(scene, scene->counts.objects - 1, &low, &high);
     bool is_first = scene->counts.objects == 1;
     scene->low = is_first ? low : vec_min(scene->low, low);
     scene->high = is_first ? high : vec_max(scene->high, high);
@@ -116,6 +175,15 @@ static aset_real *outline_points(const aset_scene *scene) {
     return scene->coordinates + scene->counts.coordinates + ASET_OUTLINE_HEAD(scene->outline.n_announced);
 }
 
+static void scale_outline(aset_scene *scene, aset_real factor) {
+    aset_real *at = outline_points(scene);
+    for (uint32_t i = 0; scene->outline.open && i < scene->outline.n_given; i++, at += outline_stride(&scene->outline)) {
+        at[0] *= factor;
+        at[1] *= factor;
+        at[2] *= factor;
+    }
+}
+
 static aset_status take_polygon_begin(void *context, uint32_t n_points, bool with_normals) {
     aset_scene *scene = context;
     aset_status status = outline_begin(&scene->outline, n_points, with_normals);
@@ -134,10 +202,14 @@ static aset_status take_polygon_point(void *context, const aset_vec3 *point, con
     if (status != ASET_OK) {
         return status;
     }
+    outline->n_given = index; /* only the points before it are to be scaled */
+    make_range(scene, vec_largest(*point));
+    outline->n_given++;
+    aset_vec3 p = scene_point(scene, *point);
     aset_real *at = outline_points(scene) + (size_t)index * outline_stride(outline);
-    at[0] = point->x;
-    at[1] = point->y;
-    at[2] = point->z;
+    at[0] = p.x;
+    at[1] = p.y;
+    at[2] = p.z;
     if (normal != NULL) {
         aset_vec3 unit = vec_unit(*normal);
         at[3] = unit.x;
@@ -158,10 +230,16 @@ static aset_status take_polygon_end(void *context) {
         return status;
     }
     polygon_finish(scene->coordinates + scene->counts.coordinates, (uint32_t)outline_coordinates(outline),
-                   outline_stride(outline), outline->low, outline->high);
+                   outline_stride(outline), scene_point(scene, outline->low), scene_point(scene, outline->high));
     finish_object(scene, outline->with_normals ? KIND_PATCH : KIND_POLYGON, outline_coordinates(outline));
     *(outline->with_normals ? &scene->counts.patches : &scene->counts.polygons) += 1;
     return ASET_OK;
+}
+
+#else
+
+static void scale_outline(aset_scene *scene, aset_real factor) {
+    (void)scene, (void)factor;
 }
 
 #endif
@@ -186,10 +264,12 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
         return status;
     }
     aset_real *at = scene->coordinates + scene->counts.coordinates;
-    at[0] = centre->x;
-    at[1] = centre->y;
-    at[2] = centre->z;
-    at[3] = radius;
+    make_range(scene, real_max(vec_largest(*centre), real_abs(radius)));
+    aset_vec3 c = scene_point(scene, *centre);
+    at[0] = c.x;
+    at[1] = c.y;
+    at[2] = c.z;
+    at[3] = radius * scene->scale;
     finish_object(scene, KIND_SPHERE, ASET_COORDINATES_SPHERE);
     scene->counts.spheres++;
     return ASET_OK;
@@ -207,8 +287,11 @@ static aset_status take_cone(void *context, const aset_vec3 *base, aset_real bas
     if (status != ASET_OK) {
         return status;
     }
-    const aset_real at[ASET_COORDINATES_CONE] = {base->x, base->y, base->z, base_radius,
-                                                 apex->x, apex->y, apex->z, apex_radius};
+    aset_real wider = real_max(real_abs(base_radius), real_abs(apex_radius));
+    make_range(scene, real_max(wider, real_max(vec_largest(*base), vec_largest(*apex))));
+    aset_vec3 b = scene_point(scene, *base), a = scene_point(scene, *apex);
+    const aset_real at[ASET_COORDINATES_CONE] = {b.x, b.y, b.z, base_radius * scene->scale,
+                                                 a.x, a.y, a.z, apex_radius * scene->scale};
     memcpy(scene->coordinates + scene->counts.coordinates, at, sizeof at);
     finish_object(scene, KIND_CONE, ASET_COORDINATES_CONE);
     scene->counts.cones++;
@@ -227,6 +310,7 @@ aset_status aset_scene_init(aset_scene *scene, aset_arena *arena, const aset_cou
         return ASET_ERR_NOMEM;
     }
     memset(scene, 0, sizeof *scene);
+    scene->scale = 1;
     scene->limits = *limits;
     scene->objects = aset_arena_alloc(arena, limits->objects * sizeof *scene->objects, ASET_CATEGORY_OBJECTS);
     scene->coordinates =
@@ -261,7 +345,7 @@ bool aset_scene_bounds(const aset_scene *scene, aset_vec3 *low, aset_vec3 *high)
     if (scene->counts.objects == 0) {
         return false;
     }
-    *low = scene->low;
-    *high = scene->high;
+    *low = vec_scale(scene->low, 1 / scene->scale);
+    *high = vec_scale(scene->high, 1 / scene->scale);
     return true;
 }

@@ -60,6 +60,14 @@ static inline shape shape_of(const aset_scene *scene, uint32_t object) {
     return s;
 }
 
+/* A point of the caller's in the scene's own lengths. */
+static inline aset_vec3 scene_point(const aset_scene *scene, aset_vec3 point) {
+    return vec_scale(point, scene->scale);
+}
+
+/* A scene is kept times a power of two that brings its largest coordinate into a range where nothing leaves that of numbers. */
+aset_real scene_scale_for(aset_real largest);
+
 /*
  * The smallest t > 0 at which the ray meets a side that is seen, REAL_INFINITY if there is none. Boxes are margin-free.
  * Normals are unit length and point to the front; a patch's shading normal is interpolated.
@@ -76,6 +84,8 @@ aset_vec3 polygon_normal(const aset_real *at, uint32_t n, unsigned stride);
 #if ASET_WITH_PATCHES
 aset_vec3 patch_normal(const aset_real *at, uint32_t n, aset_vec3 point);
 #endif
+/* Multiplies what is a length. */
+void polygon_scale(aset_real *at, uint32_t n, unsigned stride, aset_real factor);
 /* Fills in what stands before the points of a polygon whose points are in place. */
 void polygon_finish(aset_real *at, uint32_t n, unsigned stride, aset_vec3 low, aset_vec3 high);
 #endif
@@ -89,6 +99,9 @@ aset_real cone_nearest(const aset_real *at, const probe *ray, unsigned sides);
 void cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high);
 aset_vec3 cone_normal(const aset_real *at, aset_vec3 point);
 #endif
+
+/* aset_object_bounds in the scene's own lengths, as everything here. */
+void object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high);
 
 /*
  * The nearest hit of the ray on one object, REAL_INFINITY without one or if it is certainly behind limit. The result is

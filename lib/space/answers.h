@@ -47,6 +47,14 @@ struct aset_answers {
 
 extern const struct aset_answers exact_answers;
 
+/* Lengths of a hit from the scene's own to the caller's. */
+static inline void answers_to_caller(query_hit *hit, const aset_scene *scene) {
+    aset_real per_scale = 1 / scene->scale;
+    hit->t *= per_scale;
+    hit->t_near *= per_scale;
+    hit->near = vec_scale(hit->near, per_scale);
+}
+
 /* The normal of a slice, towards the ray. */
 static inline aset_vec3 answers_slice_normal(int face) {
     aset_real towards = (face & 1) != 0 ? R(1) : R(-1);

@@ -67,7 +67,7 @@ static uint32_t exact_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 
     probe ray;
     exact_query q;
     aset_real moved = approach_ready(&ray, tracer->scene, origin, direction);
-    bool found = exact(&q, tracer, &ray, moved, t_max, false, statistics);
+    bool found = exact(&q, tracer, &ray, moved, t_max * tracer->scene->scale, false, statistics);
     hit->near = probe_origin(&ray);
     hit->t_near = q.best;
     hit->t = q.best + moved;
@@ -76,6 +76,7 @@ static uint32_t exact_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 
     hit->cover = 1;
     hit->scene = tracer->scene;
     hit->by = &exact_answers;
+    answers_to_caller(hit, tracer->scene);
     return found;
 }
 
@@ -85,12 +86,12 @@ static bool exact_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 dir
     probe ray;
     exact_query q;
     aset_real moved = approach_ready(&ray, tracer->scene, origin, direction);
-    return exact(&q, tracer, &ray, moved, t_max, true, statistics);
+    return exact(&q, tracer, &ray, moved, t_max * tracer->scene->scale, true, statistics);
 }
 
 static void exact_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit) {
     (void)own, (void)tracer;
-    object_normals(hit->scene, hit->object, surface->point, &surface->normal, &surface->geometric);
+    object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal, &surface->geometric);
     surface->material = shape_of(hit->scene, hit->object).material;
 }
 

@@ -46,7 +46,7 @@ static size_t collect_extents(aset_real *extents, const aset_scene *scene, int a
     size_t n = 0, n_objects = scene->counts.objects;
     for (uint32_t i = 0; i < n_objects; i++) {
         aset_vec3 low, high;
-        aset_object_bounds(scene, i, &low, &high);
+        object_bounds(scene, i, &low, &high);
         extents[2 * i] = slices_grown_low(scene, vec_at(&low, a));
         extents[2 * i + 1] = slices_grown_high(scene, vec_at(&high, a));
     }

@@ -14,7 +14,9 @@
 void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]) {
     aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
     aset_real margin = REAL_UNIT;
-    if (aset_scene_bounds(scene, &low, &high)) {
+    if (scene->counts.objects > 0) {
+        low = scene->low;
+        high = scene->high;
         margin = scene->margin;
     }
     for (int a = 0; a < 3; a++) {
@@ -53,7 +55,7 @@ int32_t slices_locate(const aset_slices *slices, int a, aset_real x) {
 
 voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object) {
     aset_vec3 low, high;
-    aset_object_bounds(scene, object, &low, &high);
+    object_bounds(scene, object, &low, &high);
     voxel_box box;
     for (int a = 0; a < 3; a++) {
         aset_real end = slices_grown_high(scene, vec_at(&high, a));
