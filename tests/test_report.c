@@ -398,7 +398,7 @@ static void test_report__drafts_and_other_parts(void **state) {
 
 static void test_report__every_status_has_a_sentence(void **state) {
     (void)state;
-    for (int i = 0; i >= ASET_ERR_ARITHMETIC; i--) {
+    for (int i = 0; i >= ASET_ERR_PRECISION; i--) {
         const char *text = aset_status_text((aset_status)i);
         assert_true(text != NULL && strlen(text) > 3);
         for (int k = 0; k > i; k--) {

@@ -219,7 +219,9 @@ void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisi
  * manage with any scratch; the less there is, the more passes over the objects. The others need what they need while
  * building: too little of it is ASET_ERR_NOMEM, with arena->missing and size->scratch telling what would be enough for any
  * scene of so many objects. ASET_ERR_ARGUMENT: divisions, depth or leaf out of range; ASET_ERR_LIMIT: over 2^32 - 2
- * references.
+ * references; ASET_ERR_PRECISION: between the ends of the scene, on its longest axis, lie fewer than 64 of the numbers that its
+ * largest coordinate has for neighbours, and not none at all. In float that is a scene more than 131,072 times its size away
+ * from the origin: move it there.
  */
 aset_status aset_space_measure(aset_space_size *size, const aset_scene *scene, const aset_method *method,
                                const aset_space_options *options, aset_arena *arena);

@@ -35,7 +35,8 @@ typedef enum aset_status {
     ASET_ERR_STOPPED = -6,     /* a caller's callback asked to stop */
     ASET_ERR_READ = -7,        /* the caller's read callback failed */
     ASET_ERR_SYNTAX = -8,      /* the input is not in the format; the reader's report says where and why */
-    ASET_ERR_ARITHMETIC = -9   /* numbers are not rounded one by one, to nearest, with denormals: see aset_arena_init */
+    ASET_ERR_ARITHMETIC = -9,  /* numbers are not rounded one by one, to nearest, with denormals: see aset_arena_init */
+    ASET_ERR_PRECISION = -10   /* the scene lies so far from the origin that its coordinates hardly tell its parts apart */
 } aset_status;
 
 /* One sentence in English for a status, never NULL; static text. */

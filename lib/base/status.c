@@ -13,6 +13,7 @@ const char *aset_status_text(aset_status status) {
     case ASET_ERR_READ: return "the input could not be read";
     case ASET_ERR_SYNTAX: return "the input is not in the expected format";
     case ASET_ERR_ARITHMETIC: return "numbers are not rounded as libaset needs it: compile it with -ffp-contract=off";
+    case ASET_ERR_PRECISION: return "the scene lies so far from the origin that its coordinates hardly tell its parts apart";
     }
     return "an unknown status";
 }

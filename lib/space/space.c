@@ -47,10 +47,22 @@ void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisi
     }
 }
 
+/* The least steps between neighbouring coordinates that a scene must be long; or it is one point, which needs none. */
+#define STEPS_LEAST 64
+
+static bool is_precise(const aset_scene *scene) {
+    aset_real size = vec_largest(vec_sub(scene->high, scene->low));
+    aset_real largest = real_max(vec_largest(scene->low), vec_largest(scene->high));
+    return scene->counts.objects == 0 || size == 0 || size >= STEPS_LEAST * 2 * REAL_UNIT * largest;
+}
+
 /* The options, checked; automatic ones are filled in. */
 static aset_status choose_size(aset_space_size *size, const aset_scene *scene, const aset_method *method,
                                const aset_space_options *options, const aset_arena *arena, bool *is_auto) {
     const uint32_t *n = size->divisions;
+    if (!is_precise(scene)) {
+        return ASET_ERR_PRECISION;
+    }
     memset(size, 0, sizeof *size);
     if (options != NULL) {
         memcpy(size->divisions, options->divisions, sizeof size->divisions);

@@ -144,7 +144,8 @@ static void trace_all(const aset_scene *scene, const uint8_t *head, bytes last, 
         aset_tracer tracer;
         aset_status measured = aset_space_measure(&size, scene, methods[m], &options, &arena);
         aset_status status = aset_space_build(&space, scene, methods[m], &options, &arena);
-        require(status == ASET_OK || ((status == ASET_ERR_NOMEM || status == ASET_ERR_LIMIT) && arena.used == 0));
+        require(status == ASET_OK || ((status == ASET_ERR_NOMEM || status == ASET_ERR_LIMIT || status == ASET_ERR_PRECISION) &&
+                                       arena.used == 0));
         require(measured != ASET_OK || status != ASET_OK || options.divisions[0] == 0 || arena.peak <= size.total);
         if (status == ASET_OK) {
             memset(&tracer, 0, sizeof tracer);
