@@ -89,7 +89,7 @@ typedef struct aset_ray {
 #define ASET_NO_OBJECT UINT32_MAX
 
 typedef struct aset_hit {
-    aset_real t; /* in lengths of the ray's direction; may underflow to 0 where that is very long */
+    aset_real t; /* in lengths of the ray's direction; may underflow to 0 where that is very long, overflow where very short */
     aset_vec3 point;
     aset_vec3 normal;    /* unit; the shading normal as the scene gives it (a patch's is interpolated), not turned */
     aset_vec3 geometric; /* unit; the surface's own normal, not turned; for a cell its slice's, towards the ray */

@@ -64,6 +64,9 @@ void query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tra
     surface->object = hit->object;
     surface->cell = 0;
     hit->by->surface(surface, own, tracer, hit);
+    if (!(vec_largest(surface->geometric) > 0)) { /* a sphere smaller than its place can be told: it faces the ray */
+        surface->normal = surface->geometric = vec_scale(direction, -1);
+    }
 }
 
 bool query_can(const aset_tracer *tracer, bool approximate) {
