@@ -235,7 +235,7 @@ static void test_stage__refuses(void **state) {
     (void)state;
     aset_counter counter;
     aset_sink sink = aset_counter_sink(&counter);
-    aset_vec3 low = v(0, 0, 0), high = v(1, 1, 1), huge = v(9e14, 9e14, 9e14);
+    aset_vec3 low = v(0, 0, 0), high = v(1, 1, 1), huge = v(9e29, 9e29, 9e29);
     aset_vec3 nowhere = v(0, (double)NAN, 0), end = v((double)INFINITY, 1, 1);
     aset_stage_options o = options_of(ASET_UP_Y, 1), flat = options_of(ASET_UP_Y, -1), odd = options_of((aset_up)7, 1),
                        thin = options_of(ASET_UP_Y, (double)INFINITY);

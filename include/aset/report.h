@@ -17,7 +17,8 @@ typedef struct aset_report {
     const aset_statistics *statistics;
     const char *method; /* aset_method_name of the space's method */
     const char *cells;  /* what a cell remembers: "flat" */
-    double load_s, build_s, render_s; /* wall clock, measured by the caller: the library has no clock */
+    double load_s, build_s, render_s; /* wall clock, measured by the caller: the library has no clock. What is not finite, below
+                                         0 or over 10^12 is told as 0 */
     const aset_counts *counts; /* of the source, where the tracer's scene is not all of it: of a draft's, say */
 } aset_report;
 
