@@ -132,7 +132,7 @@ test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset al
 test-long: $(BUILD)/aset ## every method against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)
 	bash tests/long.sh $(BUILD)/aset $(BUILD)/long
 
-EXTREMES := test_tight test_self test_scale test_degenerate
+EXTREMES := test_tight test_self test_scale test_degenerate test_oracle
 check-extremes: $(addprefix $(BUILD)/tests/,$(EXTREMES)) ## geometry at its worst, with all the rays promised (minutes)
 	@failed=; for t in $(EXTREMES); do echo "== $$t"; ASET_LONG=1 $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi
