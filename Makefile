@@ -110,6 +110,14 @@ $(BUILD)/tests/bench: tests/bench.c tests/bench_common.h $(ARCHIVES)
 	$(call say,CC)
 	$(Q)$(CC) $(CPPFLAGS) $(filter-out -Ilib,$(STRICT)) $(POSIX) $(CFLAGS) -o $@ $< $(PROCEDURAL_A) $(CORE_A) -lm
 
+# lib/scene/object.c with other names for what this program puts its own choice before.
+$(BUILD)/tests/bench_robust: tests/bench_robust.c tests/bench_common.h $(ARCHIVES)
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) -Dobject_nearest=robust_object_nearest -Dprobe_make=robust_probe_make \
+	  -c lib/scene/object.c -o $@_object.o
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) -o $@ $< $@_object.o $(PROCEDURAL_A) $(CORE_A) -lm
+
 # Embree 3, if a small program with it compiles and links; else bench_peers says that it is absent and ends well.
 EMBREE = $(shell mkdir -p $(BUILD)/tests && echo 'int main(void) { return rtcNewDevice(0) == 0; }' | \
   $(CC) -include embree3/rtcore.h -x c - -o $(BUILD)/tests/embree-probe -lembree3 2>/dev/null && echo yes)
@@ -213,6 +221,9 @@ bench-instructions: $(BUILD)/tests/bench ## the same in instructions a ray (need
 bench-peers: $(BUILD)/tests/bench_peers ## ours beside Embree 3, if it is installed: build and picture, as ratios
 	@$(BUILD)/tests/bench_peers $(ARGS)
 
+bench-robust: $(BUILD)/tests/bench_robust ## what robust geometry costs: the library's tests beside plain ones, in turns
+	@$(BUILD)/tests/bench_robust $(ARGS)
+
 bench-drafts: $(BUILD)/tests/bench_drafts ## from triangles to a picture: a draft beside Embree 3, at 262,144 and 4,194,304 triangles
 	@$(BUILD)/tests/bench_drafts $(ARGS)
 
@@ -261,6 +272,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

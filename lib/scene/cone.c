@@ -72,7 +72,23 @@ static bool quadratic_roots(aset_real a, aset_real b, aset_real c, aset_real roo
     return true;
 }
 
+/*
+ * Whether the line passes the sphere about the cone, as most do that are asked: no root is needed to tell. The sphere is larger by
+ * far more than the rounding, 3 u of the distance |f|: (a + b)^2 <= (17 / 16) a^2 + 17 b^2.
+ */
+static bool sphere_missed(const aset_real *at, const probe *ray) {
+    aset_vec3 base = vec(at[0], at[1], at[2]), apex = vec(at[4], at[5], at[6]), half = vec_scale(vec_sub(apex, base), R(0.5));
+    aset_vec3 d = probe_direction(ray), f = vec_sub(probe_origin(ray), vec_add(base, half));
+    aset_vec3 nearest = vec_along(f, -vec_dot(f, d), d);
+    aset_real wider = real_max(real_abs(at[3]), real_abs(at[7])), square = vec_dot(half, half) + wider * wider;
+    aset_real slack = 16 * REAL_UNIT;
+    return vec_dot(nearest, nearest) > R(17.0 / 16) * square + 17 * slack * slack * vec_dot(f, f);
+}
+
 aset_real cone_nearest(const aset_real *at, const probe *ray, unsigned sides) {
+    if (sphere_missed(at, ray)) {
+        return REAL_INFINITY;
+    }
     cone c = cone_of(at);
     aset_vec3 d = probe_direction(ray), from_base = vec_sub(probe_origin(ray), c.base);
     aset_real shift = vec_dot(vec_along(vec_scale(c.axis, c.length / 2), -1, from_base), d);
@@ -94,16 +110,15 @@ aset_real cone_nearest(const aset_real *at, const probe *ray, unsigned sides) {
     return REAL_INFINITY;
 }
 
-/* A disc of radius r across the unit axis k reaches r sqrt(1 - k_a^2) along axis a. */
-static aset_vec3 disc_reach(aset_vec3 k, aset_real r) {
-    return vec(r * real_sqrt(real_max(0, k.y * k.y + k.z * k.z)), r * real_sqrt(real_max(0, k.x * k.x + k.z * k.z)),
-               r * real_sqrt(real_max(0, k.x * k.x + k.y * k.y)));
+/* A disc of radius r across the unit axis k reaches r sqrt(1 - k_a^2) along axis a: here for the radius 1. */
+static aset_vec3 disc_reach(aset_vec3 k) {
+    return vec(real_sqrt(k.y * k.y + k.z * k.z), real_sqrt(k.x * k.x + k.z * k.z), real_sqrt(k.x * k.x + k.y * k.y));
 }
 
 void cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
     cone c = cone_of(at);
     aset_vec3 apex = vec(at[4], at[5], at[6]);
-    aset_vec3 base_reach = disc_reach(c.axis, c.radius), apex_reach = disc_reach(c.axis, real_abs(at[7]));
+    aset_vec3 reach = disc_reach(c.axis), base_reach = vec_scale(reach, c.radius), apex_reach = vec_scale(reach, real_abs(at[7]));
     *low = vec_min(vec_sub(c.base, base_reach), vec_sub(apex, apex_reach));
     *high = vec_max(vec_add(c.base, base_reach), vec_add(apex, apex_reach));
 }
