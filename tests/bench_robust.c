@@ -113,8 +113,9 @@ static aset_real plain_sphere(const aset_real *at, aset_vec3 o, aset_vec3 d, boo
 }
 
 static aset_real plain_cone(const aset_real *at, aset_vec3 o, aset_vec3 d, bool one_sided) {
-    aset_vec3 base = point_at(at), along = vec_sub(point_at(at + 4), base), axis = vec_unit(along), f = vec_sub(o, base);
-    aset_real height = vec_length(along), r0 = real_abs(at[3]), slope = (real_abs(at[7]) - r0) / height;
+    aset_real height;
+    aset_vec3 base = point_at(at), axis = vec_unit_length(vec_sub(point_at(at + 4), base), &height), f = vec_sub(o, base);
+    aset_real r0 = real_abs(at[3]), slope = (real_abs(at[7]) - r0) / height;
     bool inside_only = at[3] < 0 || at[7] < 0;
     aset_real fk = vec_dot(f, axis), dk = vec_dot(d, axis), radius = r0 + slope * fk;
     aset_vec3 fa = vec_along(f, -fk, axis), da = vec_along(d, -dk, axis);

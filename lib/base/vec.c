@@ -61,3 +61,13 @@ aset_vec3 vec_unit(aset_vec3 a) {
     }
     return vec_scale(a, 1 / real_sqrt(square));
 }
+
+aset_vec3 vec_unit_length(aset_vec3 a, aset_real *length) {
+    aset_real square = vec_dot(a, a);
+    if (!(square > SQUARE_MIN && square < SQUARE_MAX)) {
+        *length = vec_length(a);
+        return vec_unit(a);
+    }
+    *length = real_sqrt(square);
+    return vec_scale(a, 1 / *length);
+}

@@ -61,4 +61,7 @@ aset_real vec_length(aset_vec3 a);
 /* The unit vector along a, or zero for zero; tiny and huge vectors keep their direction. */
 aset_vec3 vec_unit(aset_vec3 a);
 
+/* Both, for one root. */
+aset_vec3 vec_unit_length(aset_vec3 a, aset_real *length);
+
 #endif

@@ -20,8 +20,7 @@ static cone cone_of(const aset_real *at) {
     aset_vec3 along = vec_sub(vec(at[4], at[5], at[6]), vec(at[0], at[1], at[2]));
     cone c;
     c.base = vec(at[0], at[1], at[2]);
-    c.axis = vec_unit(along);
-    c.length = vec_length(along);
+    c.axis = vec_unit_length(along, &c.length);
     c.radius = real_abs(at[3]);
     c.slope = (real_abs(at[7]) - c.radius) / c.length;
     c.inside_only = at[3] < 0 || at[7] < 0;
