@@ -38,11 +38,26 @@ static aset_vec3 polygon_area(const aset_real *points, uint32_t n_points, unsign
     return sum;
 }
 
-aset_vec3 polygon_normal(const aset_real *at, uint32_t n, unsigned stride) {
-    if (n > 3 * stride) {
-        return vec(at[0], at[1], at[2]);
+/*
+ * The unit normal of three points, or zero, and a corner to take the plane's distance from: the one between the two shorter edges,
+ * whose product errs least. From the tip of a needle the normal would err by as much as the needle is longer than wide.
+ */
+static aset_vec3 triangle_normal(const aset_real *points, unsigned stride, aset_vec3 *corner) {
+    const aset_real *p = points, *q = p + stride, *r = q + stride;
+    aset_vec3 a = vec(p[0], p[1], p[2]), b = vec(q[0], q[1], q[2]), c = vec(r[0], r[1], r[2]);
+    aset_vec3 ab = vec_sub(b, a), bc = vec_sub(c, b), ca = vec_sub(a, c);
+    aset_real ab2 = vec_dot(ab, ab), bc2 = vec_dot(bc, bc), ca2 = vec_dot(ca, ca);
+    if (bc2 >= ab2 && bc2 >= ca2) {
+        *corner = a;
+        return vec_unit(vec_cross(ca, ab));
     }
-    return vec_unit(polygon_area(at, 3, stride));
+    *corner = ca2 >= ab2 ? b : c;
+    return vec_unit(ca2 >= ab2 ? vec_cross(ab, bc) : vec_cross(bc, ca));
+}
+
+aset_vec3 polygon_normal(const aset_real *at, uint32_t n, unsigned stride) {
+    aset_vec3 corner;
+    return n > 3 * stride ? vec(at[0], at[1], at[2]) : triangle_normal(at, stride, &corner);
 }
 
 static void put_vec(aset_real *at, aset_vec3 v) {
@@ -54,7 +69,7 @@ static void put_vec(aset_real *at, aset_vec3 v) {
 void polygon_finish(aset_real *at, uint32_t n, unsigned stride, aset_vec3 low, aset_vec3 high) {
     uint32_t n_points;
     aset_real *points = at + (points_of(at, n, stride, &n_points) - at);
-    aset_vec3 normal = vec_unit(polygon_area(points, n_points, stride));
+    aset_vec3 normal = n_points == 3 ? polygon_normal(at, n, stride) : vec_unit(polygon_area(points, n_points, stride));
     if (n_points > 3) {
         put_vec(at, normal);
     }
@@ -142,12 +157,11 @@ static aset_real triangle_nearest(const aset_real *points, unsigned stride, cons
     if (((edge_crosses(&a, &b) + edge_crosses(&b, &c) + edge_crosses(&c, &a)) & 1) == 0) {
         return REAL_INFINITY;
     }
-    aset_vec3 normal = vec_unit(polygon_area(points, 3, stride));
+    aset_vec3 corner, normal = triangle_normal(points, stride, &corner);
     if (!(vec_largest(normal) > 0)) {
         return REAL_INFINITY; /* on one line: what crossed are rounding errors */
     }
-    aset_vec3 first = vec(points[0], points[1], points[2]);
-    aset_real t = vec_dot(normal, vec_sub(first, probe_origin(ray))) / vec_dot(normal, probe_direction(ray));
+    aset_real t = vec_dot(normal, vec_sub(corner, probe_origin(ray))) / vec_dot(normal, probe_direction(ray));
     return between_corners(t, a.z * ray->shear[2], b.z * ray->shear[2], c.z * ray->shear[2]);
 }
 
