@@ -145,6 +145,12 @@ check-extremes: $(addprefix $(BUILD)/tests/,$(EXTREMES)) ## geometry at its wors
 	@failed=; for t in $(EXTREMES); do echo "== $$t"; ASET_LONG=1 $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi
 
+firmware-test: $(BUILD)/aset ## examples/firmware on a Cortex-M4 and a RISC-V under QEMU, against the host (MODEL=bunny.obj GRID=64: that draft)
+	@GRID=$(GRID) bash tests/firmware.sh $(BUILD)/aset $(BUILD) "$(CC)" $(MODEL)
+
+deps-firmware: ## install what firmware-test and size want: compilers for Arm and RISC-V, QEMU
+	bash tools/deps-firmware.sh
+
 determinism: $(BUILD)/aset ## golden hashes of pictures and counts, for every compiler and machine that can be built and run here
 	bash tests/determinism.sh all $(BUILD)/aset $(BUILD)/determinism
 
@@ -272,6 +278,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

@@ -28,7 +28,7 @@ for room in load procedural; do
         done
     done
 done
-for file in tools/*.[ch] examples/*.[ch]; do
+for file in tools/*.[ch] examples/*.[ch] examples/*/*.[ch]; do
     [ -e "$file" ] || continue
     for include in $(sed -n 's/^#include ["<]\(.*\)[">]/\1/p' "$file"); do
         case "$include" in
