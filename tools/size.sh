@@ -1,10 +1,12 @@
 #!/bin/bash
-# Bytes of machine code and constant data that the core adds to a program, by feature: size.sh CC DIRECTORY
-# Each row is a program linked with unused sections dropped, less the same program without the core: what it really costs. The
-# program builds a scene through the sink, a space, a summary where the row has one, and draws rows.
+# Bytes of machine code and constant data that the core adds to a program, by feature: size.sh CC DIRECTORY [docs/size.md]
+# Each row is a program that draws, linked with unused sections dropped. Cortex-M: .text and .rodata of all of it, libm, libgcc and
+# mem* included, without startup. The host: less the same program without the core. A file, if named, gets the table as a page.
+# Ends with an error where one of the promised limits is exceeded.
 set -eu
 cc=$1
 dir=$2
+page=${3:-}
 mkdir -p "$dir"
 cat > "$dir/user.c" <<'END'
 #ifdef EMPTY
@@ -12,85 +14,173 @@ cat > "$dir/user.c" <<'END'
 #include <string.h>
 static volatile float x = 2;
 int main(void) { char a[64]; memset(a, (int)sqrtf(x), sizeof a); memcpy(a, a + 32, 16); return a[(int)x]; }
-#elif defined DRAFT
+#else
 #include <aset/aset.h>
-static ASET_ARENA_BLOCK(block, 4096);
+static ASET_ARENA_BLOCK(block, 32768);
 static unsigned char row[64 * 3];
-extern const uint32_t words[];
-const uint32_t words[40] = {1};
+#ifdef DRAFT
+extern const uint32_t *volatile flash; /* where a draft lies and how long it is, which the optimizer shall not know */
+extern volatile size_t flash_words;
 int main(void) {
     aset_arena arena;
     aset_draft draft;
     aset_scratch scratch;
-    aset_tracer tracer = {.draft = &draft, .scene = &draft.stage, .approx_kinds = ASET_ALL_KINDS, .depth = 1};
-    aset_picture picture = {.width = 64, .height = 64, .pixels = row};
-    aset_arena_init(&arena, block, sizeof block);
-    aset_draft_open(&draft, words, 40, &arena, 0);
-    aset_scratch_init(&scratch, 1, &arena);
-    return aset_render_rows(&tracer, &draft.stage.view, &picture, 0, 64, &scratch, 0);
+    const aset_tracer tracer = {.draft = &draft, .scene = &draft.stage, .approx_kinds = ASET_ALL_KINDS};
+    const aset_picture picture = {.width = 64, .height = 64, .pixels = row};
+    return aset_arena_init(&arena, block, sizeof block) || aset_draft_open(&draft, flash, flash_words, &arena, 0) ||
+           aset_scratch_init(&scratch, 0, &arena) || aset_render_rows(&tracer, &draft.stage.view, &picture, 0, 64, &scratch, 0);
 }
 #else
-#include <aset/aset.h>
-static ASET_ARENA_BLOCK(block, 65536);
-static unsigned char row[64 * 3];
+extern volatile aset_real input[16];
 int main(void) {
     aset_arena arena;
     aset_scene scene;
     aset_space space;
     aset_scratch scratch;
-    aset_counts limits = {.objects = 9, .coordinates = 99, .materials = 1, .lights = 1};
-    aset_view view = {.from = {0, -5, 0}, .up = {0, 0, 1}, .angle_deg = 40};
+    const aset_counts limits = {.objects = 9, .coordinates = 99, .materials = 1, .lights = 1};
+    const aset_vec3 p[3] = {{input[0], input[1], input[2]}, {input[3], input[4], input[5]}, {input[6], input[7], input[8]}};
+    const aset_view view = {.from = p[0], .up = p[1], .angle_deg = input[9]};
+    const aset_light light = {.position = p[2]};
+    const aset_material material = {.diffuse = input[10], .specular = input[11], .shine = input[12]};
     aset_tracer tracer = {.scene = &scene, .space = &space};
-    aset_picture picture = {.width = 64, .height = 64, .pixels = row};
-    aset_arena_init(&arena, block, sizeof block);
-    aset_scene_init(&scene, &arena, &limits);
-    aset_sink sink = aset_scene_sink(&scene);
-    sink.material(sink.context, &(aset_material){.diffuse = 1});
-    aset_space_build(&space, &scene, &METHOD, 0, &arena);
-#if ASET_WITH_APPROXIMATION
-    aset_summary summary;
-    aset_summary_build(&summary, &space, 0, &arena);
-    tracer.summary = &summary;
+    const aset_picture picture = {.width = 64, .height = 64, .pixels = row};
+    aset_status status = aset_arena_init(&arena, block, sizeof block);
+    if (status == ASET_OK) status = aset_scene_init(&scene, &arena, &limits);
+    if (status != ASET_OK) return status;
+    const aset_sink sink = aset_scene_sink(&scene);
+    status = sink.light(sink.context, &light);
+    if (status == ASET_OK) status = sink.material(sink.context, &material);
+#if ASET_WITH_POLYGONS
+    if (status == ASET_OK) status = aset_sink_polygon(&sink, p, ASET_WITH_PATCHES ? p : 0, 3);
 #endif
-    aset_scratch_init(&scratch, 0, &arena);
-    return aset_render_rows(&tracer, &view, &picture, 0, 64, &scratch, 0);
+#if ASET_WITH_SPHERES
+    if (status == ASET_OK) status = sink.sphere(sink.context, &p[0], input[13]);
+#endif
+#if ASET_WITH_CONES
+    if (status == ASET_OK) status = sink.cone(sink.context, &p[0], input[13], &p[1], input[14]);
+#endif
+    if (status == ASET_OK) status = aset_space_build(&space, &scene, &METHOD, 0, &arena);
+#if ASET_WITH_APPROXIMATION && !defined(EXACT)
+    aset_summary summary;
+    if (status == ASET_OK) status = aset_summary_build(&summary, &space, 0, &arena);
+    tracer.summary = &summary;
+    tracer.approx_kinds = ASET_ALL_KINDS;
+#endif
+    if (status == ASET_OK) status = aset_scratch_init(&scratch, 0, &arena);
+    return status == ASET_OK ? aset_render_rows(&tracer, &view, &picture, 0, 64, &scratch, 0) : status;
 }
+#endif
 #endif
 END
-flags="-std=c99 -Os -ffp-contract=off -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables -Iinclude -Ilib"
-bytes() { size "$1" | awk 'NR == 2 { print $1 + $2 }'; }
-# shellcheck disable=SC2086
-"$cc" $flags -DEMPTY "$dir/user.c" -Wl,--gc-sections -o "$dir/empty" -lm
-empty=$(bytes "$dir/empty")
-measure() { # label, method, switches
-    label=$1
-    method=$2
-    shift 2
+cat > "$dir/data.c" <<'END'
+#include <aset/aset.h>
+const uint32_t *volatile flash;
+volatile size_t flash_words;
+volatile aset_real input[16];
+END
+common="-std=c99 -Os -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables -Iinclude -Ilib"
+core="lib/base/*.c lib/scene/*.c lib/space/*.c lib/approx/*.c lib/trace/*.c"
+lto="-flto -flto-partition=one -fno-ipa-cp"
+m4="-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16"
+m0="-mcpu=cortex-m0plus -mthumb -mfloat-abi=soft"
+arm_link="--specs=nano.specs -nostartfiles -Wl,--gc-sections,-emain"
+has_arm=1
+if ! command -v arm-none-eabi-gcc > /dev/null 2>&1; then
+    echo "size: arm-none-eabi-gcc is not here (make deps-firmware): the host alone is measured" >&2
+    has_arm=0
+fi
+
+host() { # switches
     # shellcheck disable=SC2086
-    "$cc" $flags "$@" -DMETHOD=aset_$method "$dir/user.c" lib/base/*.c lib/scene/*.c lib/space/*.c lib/approx/*.c lib/trace/*.c \
-        -Wl,--gc-sections -o "$dir/program" -lm
-    printf '| %s | %s | %d |\n' "$label" "$method" $(($(bytes "$dir/program") - empty))
+    "$cc" $common "$@" "$dir/user.c" "$dir/data.c" $core -Wl,--gc-sections -o "$dir/program" -lm
+    size "$dir/program" | awk -v empty="$empty" 'NR == 2 { print $1 + $2 - empty }'
 }
-no_kinds="-DASET_WITH_CONES=0 -DASET_WITH_PATCHES=0"
+arm() { # cpu flags, further flags, switches
+    cpu=$1
+    more=$2
+    shift 2
+    if [ $has_arm = 0 ]; then echo -; return; fi
+    # the data lie outside of what is optimized as a whole
+    # shellcheck disable=SC2086
+    arm-none-eabi-gcc $cpu $common "$@" -c "$dir/data.c" -o "$dir/data.o"
+    # shellcheck disable=SC2086
+    arm-none-eabi-gcc $cpu $common $arm_link $more "$@" "$dir/user.c" "$dir/data.o" $core -o "$dir/program.elf" -lm -lgcc 2> "$dir/log" ||
+        { cat "$dir/log" >&2; exit 1; }
+    arm-none-eabi-size -A "$dir/program.elf" | awk '$1 == ".text" || $1 == ".rodata" { n += $2 } END { print n }'
+}
+# shellcheck disable=SC2086
+"$cc" $common -DEMPTY "$dir/user.c" -Wl,--gc-sections -o "$dir/empty" -lm
+empty=$(size "$dir/empty" | awk 'NR == 2 { print $1 + $2 }')
+
+bad=0
+out=$dir/table
+: > "$out"
+say() { echo "$1" | tee -a "$out"; }
+check() { # label, bytes, limit or -
+    if [ "$3" != - ] && [ "$2" != - ] && [ "$2" -ge "$3" ]; then
+        echo "size: $1: $2 bytes, promised are less than $3" >&2
+        bad=1
+    fi
+}
+measure() { # label, limit of the first column or -, switches
+    label=$1
+    limit=$2
+    shift 2
+    small=$(arm "$m4" "$lto" "$@")
+    plain=$(arm "$m4" "" "$@")
+    soft=$(arm "$m0" "" "$@")
+    hosted=$(host "$@")
+    say "| $label | $small | $plain | $soft | $hosted |"
+    check "$label" "$small" "$limit"
+}
+polygons="-DASET_WITH_CONES=0 -DASET_WITH_PATCHES=0 -DASET_WITH_SPHERES=0"
+spheres="-DASET_WITH_CONES=0 -DASET_WITH_PATCHES=0 -DASET_WITH_POLYGONS=0"
+none="$polygons -DASET_WITH_POLYGONS=0"
 no_effects="-DASET_WITH_REFLECTION=0 -DASET_WITH_REFRACTION=0"
 exact="-DASET_WITH_APPROXIMATION=0"
-echo "| what | method | bytes |"
-echo "|---|---|---|"
-for method in mset brute set grid octree arts excell; do
-    measure "everything" $method
-done
-measure "without cones" mset -DASET_WITH_CONES=0
+say "| program | Cortex-M4F, whole | Cortex-M4F | Cortex-M0+, soft float | x86-64 |"
+say "|---|---|---|---|---|"
 # shellcheck disable=SC2086
 {
-    measure "without cones and patches" mset $no_kinds
-    measure "without refraction" mset -DASET_WITH_REFRACTION=0
-    measure "without reflection and refraction" mset $no_effects
-    measure "without the approximation" mset $exact
-    measure "polygons only" mset $no_kinds -DASET_WITH_SPHERES=0
-    measure "polygons only, no reflection or refraction" mset $no_kinds -DASET_WITH_SPHERES=0 $no_effects
-    measure "the same, exact only" mset $no_kinds -DASET_WITH_SPHERES=0 $no_effects $exact
-    measure "spheres only, exact only, no reflection or refraction" mset $no_kinds -DASET_WITH_POLYGONS=0 $no_effects $exact
-    measure "the same" brute $no_kinds -DASET_WITH_POLYGONS=0 $no_effects $exact
-    measure "a draft opened and drawn, all kinds of kept objects" - -DDRAFT
-    measure "the same, kept polygons only, no reflection or refraction" - -DDRAFT $no_kinds -DASET_WITH_SPHERES=0 $no_effects
+    measure "a draft opened and drawn; no kept objects; no reflection or refraction" 12288 -DDRAFT $none $no_effects
+    measure "the same with reflection and refraction" - -DDRAFT $none
+    measure "a draft, kept polygons; no reflection or refraction" - -DDRAFT $polygons $no_effects
+    measure "a draft, kept objects of all kinds; every switch as it comes" - -DDRAFT
+    measure "exact, MSET, polygons; no reflection or refraction" 24576 -DMETHOD=aset_mset $polygons $exact $no_effects
+    measure "exact, MSET, polygons; with both" 24576 -DMETHOD=aset_mset $polygons $exact
+    measure "exact, MSET, spheres; no reflection or refraction" - -DMETHOD=aset_mset $spheres $exact $no_effects
+    measure "exact, brute force, spheres; no reflection or refraction" - -DMETHOD=aset_brute $spheres $exact $no_effects
+    measure "exact, MSET, all kinds; every switch as it comes" - -DMETHOD=aset_mset -DEXACT
+    for method in mset brute set grid octree arts excell; do
+        measure "exact and approximate, $method, all kinds" - -DMETHOD=aset_$method
+    done
+    # nothing dropped: every function of the core, and what these ask of libm, libgcc and for mem*
+    arm_link="--specs=nano.specs -nostartfiles -Wl,-emain"
+    whole=$(arm "$m4" "" -DMETHOD=aset_mset)
+    soft=$(arm "$m0" "" -DMETHOD=aset_mset)
+    "$cc" $common -DMETHOD=aset_mset "$dir/user.c" "$dir/data.c" $core -o "$dir/program" -lm
+    say "| the whole core, nothing dropped | - | $whole | $soft | $(size "$dir/program" | awk -v empty="$empty" 'NR == 2 { print $1 + $2 - empty }') |"
+    check "the whole core" "$whole" 65536
 }
+if [ -n "$page" ] && [ $has_arm = 1 ]; then
+    {
+        echo "# What the core weighs"
+        echo
+        echo "Bytes of code and constants that a program takes which does what the row says, made by \`make size\` with"
+        echo "$(arm-none-eabi-gcc -dumpfullversion | sed 's/^/arm-none-eabi-gcc /') and, for x86-64, $(basename "$cc") $("$cc" -dumpfullversion). A switch at 0 leaves its feature out"
+        echo "(\`include/aset/config.h\`). A draft keeps large objects, a ground say, exact beside its cells, unless it was baked without them."
+        echo
+        cat "$out"
+        echo
+        echo "All: \`-Os -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections -Wl,--gc-sections\`. Cortex-M: .text and"
+        echo ".rodata of the whole program with libm, libgcc and newlib's nano \`mem*\`, without startup and without the draft itself."
+        echo
+        echo "- Cortex-M4F: \`$m4\`; whole: besides \`$lto\`"
+        echo "- Cortex-M0+: \`$m0\`"
+        echo "- x86-64: less a program that calls the same library functions and nothing of libaset"
+        echo
+        echo "\`make size\` fails where the first row reaches 12,288 bytes, exact MSET with polygons 24,576 (both in the first column), or the"
+        echo "whole core 65,536."
+    } > "$page"
+fi
+exit $bad

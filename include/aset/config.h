@@ -66,8 +66,10 @@
 #if ASET_WITH_DRAFTS && !ASET_WITH_APPROXIMATION
 #error "ASET_WITH_DRAFTS needs ASET_WITH_APPROXIMATION: who may take a draft is said by the same fields"
 #endif
-#if !ASET_WITH_POLYGONS && !ASET_WITH_SPHERES && !ASET_WITH_CONES
-#error "switch on at least one kind of object: ASET_WITH_POLYGONS, ASET_WITH_SPHERES or ASET_WITH_CONES"
+/* With no kind of object at all the library draws drafts that keep none exact, and nothing else. */
+#define ASET_WITH_OBJECTS (ASET_WITH_POLYGONS || ASET_WITH_SPHERES || ASET_WITH_CONES)
+#if !ASET_WITH_OBJECTS && !ASET_WITH_DRAFTS
+#error "switch on at least one kind of object, ASET_WITH_POLYGONS, ASET_WITH_SPHERES or ASET_WITH_CONES, or ASET_WITH_DRAFTS"
 #endif
 
 /*

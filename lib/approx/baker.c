@@ -12,6 +12,8 @@
 /* What the cells take as coordinates: so that squares of lengths, in the words' floats too, stay within the range of numbers. */
 #define COORDINATE_MAX R(1e15)
 
+#if ASET_WITH_OBJECTS
+
 static aset_status check_box(aset_vec3 low, aset_vec3 high) {
     bool fits = vec_largest(low) <= COORDINATE_MAX && vec_largest(high) <= COORDINATE_MAX;
     return fits ? ASET_OK : ASET_ERR_GEOMETRY;
@@ -57,6 +59,8 @@ static void measure(aset_baker *b, aset_vec3 low, aset_vec3 high, uint32_t n_poi
     }
 }
 
+#endif
+
 #if ASET_WITH_POLYGONS
 /* The polygon in hand is whole, in points. */
 static void take_polygon(aset_baker *b, uint32_t n) {
@@ -101,9 +105,11 @@ static aset_status take_material(void *context, const aset_material *material) {
     return ASET_OK;
 }
 
+#if ASET_WITH_OBJECTS
 static aset_status check_material(const aset_baker *b) {
     return b->has_material ? b->failure == ASET_ERR_NOMEM ? ASET_OK : b->failure : ASET_ERR_ARGUMENT;
 }
+#endif
 
 #if ASET_WITH_POLYGONS
 static aset_status take_polygon_begin(void *context, uint32_t n_points, bool with_normals) {

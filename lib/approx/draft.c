@@ -216,6 +216,8 @@ static aset_status read_lights(const uint32_t *w, uint32_t n, const aset_sink *s
     return status;
 }
 
+#if ASET_WITH_OBJECTS
+
 static aset_status read_polygon(const uint32_t *w, unsigned kind, uint32_t n_points, const aset_sink *sink) {
 #if ASET_WITH_POLYGONS
     uint32_t stride = kind == KIND_PATCH ? 6 : 3;
@@ -274,6 +276,15 @@ static aset_status read_kept(const uint32_t *w, uint32_t left, uint32_t *n, cons
     return ASET_ERR_UNSUPPORTED;
 }
 
+#else
+
+static aset_status read_kept(const uint32_t *w, uint32_t left, uint32_t *n, const aset_sink *sink) {
+    (void)w, (void)left, (void)n, (void)sink;
+    return ASET_ERR_UNSUPPORTED;
+}
+
+#endif
+
 aset_status draft_read_stage(const aset_draft *draft, const aset_sink *sink) {
     const uint32_t *words = draft->words, *w = draft->textures + (size_t)draft->n_textures * TEXTURE_WORDS;
     uint32_t left = words[WORD_KEPT_WORDS];
@@ -291,16 +302,29 @@ aset_status draft_read_stage(const aset_draft *draft, const aset_sink *sink) {
     return status == ASET_OK && left > 0 ? ASET_ERR_SYNTAX : status;
 }
 
-/* Twice: to count what the stage takes, and to build it. */
-static aset_status make_stage(aset_draft *draft, aset_arena *arena) {
+static aset_status count_stage(aset_counts *counts, const aset_draft *draft) {
+#if ASET_WITH_OBJECTS
     aset_counter counter;
     aset_sink sink = aset_counter_sink(&counter);
     aset_status status = draft_read_stage(draft, &sink);
+    *counts = counter.counts;
+    return status;
+#else /* lights are all there is: the counter need not be linked */
+    memset(counts, 0, sizeof *counts);
+    counts->lights = draft->words[WORD_LIGHTS];
+    return ASET_OK;
+#endif
+}
+
+/* Twice: to count what the stage takes, and to build it. */
+static aset_status make_stage(aset_draft *draft, aset_arena *arena) {
+    aset_counts counts;
+    aset_status status = count_stage(&counts, draft);
     if (status == ASET_OK) {
-        status = aset_scene_init(&draft->stage, arena, &counter.counts);
+        status = aset_scene_init(&draft->stage, arena, &counts);
     }
     if (status == ASET_OK) {
-        sink = aset_scene_sink(&draft->stage);
+        aset_sink sink = aset_scene_sink(&draft->stage);
         status = draft_read_stage(draft, &sink);
     }
     return status;

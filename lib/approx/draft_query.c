@@ -11,6 +11,8 @@ static draft_mode mode_of(const aset_tracer *tracer) {
     return tracer->draft_sides ? DRAFT_SIDE : DRAFT_PLANE;
 }
 
+#if ASET_WITH_OBJECTS
+
 aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                            aset_statistics *statistics) {
     const aset_scene *stage = &draft->stage;
@@ -44,6 +46,26 @@ aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 or
     answers_to_caller(hit, stage);
     return hit->t;
 }
+
+static void kept_surface(aset_hit *surface, const query_hit *hit) {
+    object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal, &surface->geometric);
+    surface->material = shape_of(hit->scene, hit->object).material;
+}
+
+#else
+
+/* aset_draft_open refuses a draft that keeps objects. */
+aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                           aset_statistics *statistics) {
+    (void)hit, (void)draft, (void)origin, (void)direction, (void)statistics;
+    return t_max;
+}
+
+static void kept_surface(aset_hit *surface, const query_hit *hit) {
+    (void)surface, (void)hit;
+}
+
+#endif
 
 uint32_t draft_query_layers(query_hit *hits, const draft_layer *met, uint32_t n, aset_vec3 origin, const query_hit *kept,
                             bool has_kept) {
@@ -97,8 +119,7 @@ static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 dir
 
 static void draft_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit) {
     if (hit->object != ASET_NO_OBJECT) {
-        object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal, &surface->geometric);
-        surface->material = shape_of(hit->scene, hit->object).material;
+        kept_surface(surface, hit);
         return;
     }
     facet f = facet_read(tracer->draft, hit->cell);

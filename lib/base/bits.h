@@ -11,6 +11,16 @@
 static inline unsigned bits_count(uint64_t x) {
 #if defined(__GNUC__) && (defined(__POPCNT__) || defined(__aarch64__))
     return (unsigned)__builtin_popcountll(x);
+#elif UINTPTR_MAX <= UINT32_MAX
+    /* half by half: numbers of 64 bits take two registers and many instructions here */
+    uint32_t low = (uint32_t)x, high = (uint32_t)(x >> 32);
+    low -= low >> 1 & UINT32_C(0x55555555);
+    high -= high >> 1 & UINT32_C(0x55555555);
+    low = (low & UINT32_C(0x33333333)) + (low >> 2 & UINT32_C(0x33333333)); /* up to 4 in each 4 bits */
+    high = (high & UINT32_C(0x33333333)) + (high >> 2 & UINT32_C(0x33333333));
+    low = (low & UINT32_C(0x0f0f0f0f)) + (low >> 4 & UINT32_C(0x0f0f0f0f)) + (high & UINT32_C(0x0f0f0f0f)) +
+          (high >> 4 & UINT32_C(0x0f0f0f0f));
+    return low * UINT32_C(0x01010101) >> 24;
 #else
     x = x - ((x >> 1) & UINT64_C(0x5555555555555555));
     x = (x & UINT64_C(0x3333333333333333)) + ((x >> 2) & UINT64_C(0x3333333333333333));

@@ -42,6 +42,7 @@ static aset_status count_material(void *context, const aset_material *material) 
     return status;
 }
 
+#if ASET_WITH_OBJECTS
 static aset_status count_object(aset_counter *counter, uint64_t coordinates, aset_vec3 low, aset_vec3 high) {
     bool is_new;
     counter->outline.open = false; /* a polygon in progress is abandoned, as the builder abandons it */
@@ -59,6 +60,7 @@ static aset_status count_object(aset_counter *counter, uint64_t coordinates, ase
     counter->counts.coordinates += coordinates;
     return ASET_OK;
 }
+#endif
 
 #if ASET_WITH_POLYGONS
 static aset_status count_polygon_begin(void *context, uint32_t n_points, bool with_normals) {

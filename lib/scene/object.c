@@ -81,7 +81,7 @@ aset_real object_margin(aset_vec3 low, aset_vec3 high) {
 }
 
 static aset_real shape_nearest(const shape *s, const probe *ray, unsigned sides, aset_real margin, aset_real limit) {
-    (void)margin, (void)limit;
+    (void)ray, (void)sides, (void)margin, (void)limit;
     switch (s->kind) {
 #if ASET_WITH_POLYGONS
     case KIND_POLYGON: return polygon_nearest(s->at, s->n, 3, ray, sides, margin, limit);

@@ -120,6 +120,8 @@ static aset_status take_material(void *context, const aset_material *material) {
     return status;
 }
 
+#if ASET_WITH_OBJECTS
+
 /* Is there room for one more object of so many coordinates, and a material for it? */
 static aset_status check_room(const aset_scene *scene, uint64_t coordinates) {
     if (!scene->recent.has_pending && !scene->recent.has_current) {
@@ -158,6 +160,8 @@ static void finish_object(aset_scene *scene, unsigned kind, uint64_t coordinates
     scene->high = is_first ? high : vec_max(scene->high, high);
     scene->margin = object_margin(scene->low, scene->high);
 }
+
+#endif
 
 #if ASET_WITH_POLYGONS
 
