@@ -61,6 +61,7 @@ ball() {
 
 formats="obj:obj stl:stl stl-ascii:stl ply-ascii:ply ply-le:ply ply-be:ply"
 draft="--approx all --approx-depth 0 --cells plane --grid 24"
+flat="--approx all --approx-depth 0 --cells flat --grid 24"
 
 # ---- pictures ----
 
@@ -121,6 +122,32 @@ many_vertices() {
     works render ball.obj $draft -s 32 -o obj.png
     works render ball.stl $draft -s 32 --up-axis y -o stl.png
     same obj.png stl.png "another picture with spilt vertices"
+    works render ball.obj $flat -s 32 -o obj.png
+    works render ball.stl $flat -s 32 --up-axis y -o stl.png
+    same obj.png stl.png "another flat picture with spilt vertices"
+}
+
+# Flat cells hold no triangle: what is held does not grow with them, in the arena or beside it, and the picture is that of a
+# render that holds all (whose eye and shadow rays are all that there are).
+flat_holds_no_triangle() {
+    local method small large
+    ball 16 >small.obj
+    ball 256 >ball.obj
+    "$convert" ball.obj ball.stl stl
+    for method in mset grid; do
+        works render small.obj $flat --method $method -s 32 --stats s.json
+        small=$(sed -n 's/.*"peak":\([0-9]*\).*/\1/p' s.json)
+        works render ball.stl $flat --method $method -s 32 --depth 1 --up-axis y --memory 64K --stats s.json -o a.png
+        large=$(sed -n 's/.*"peak":\([0-9]*\).*/\1/p' s.json)
+        [ "$large" -lt $((2 * small)) ] || fail "$method: 131072 triangles take $large bytes, 512 take $small"
+        grep -q '"objects":0,"vertices":0,' s.json || fail "$method: objects are held: $(cat s.json)"
+        works render ball.stl --grid 24 --approx primary,shadow --approx-depth 0 --method $method -s 32 --depth 1 --up-axis y \
+            --memory 32M -o b.png
+        same a.png b.png "$method: another picture than with all triangles held"
+    done
+    (ulimit -v 24576 && "$aset" --help >/dev/null 2>&1) || return 0 # a sanitizer's memory
+    (ulimit -v 24576 && "$aset" render ball.stl $flat -s 32 --up-axis y --memory 64K) 2>"$err" ||
+        fail "within 24 MB of address space: $(head -n 1 "$err")"
 }
 
 axes_and_ground() {
@@ -275,7 +302,7 @@ times_are_told_apart() {
 # ---- the run ----
 
 cases="
-all_formats all_formats_of_further_models short_form_is_a_draft little_memory many_vertices axes_and_ground the_view_fits
+all_formats all_formats_of_further_models short_form_is_a_draft little_memory many_vertices flat_holds_no_triangle axes_and_ground the_view_fits
 transparent colours bad_parts_are_counted bad_files odd_models wrong_words info_of_a_model times_are_told_apart
 "
 # shellcheck disable=SC2086

@@ -1077,8 +1077,71 @@ static void test_scene__polygons_without_area_are_kept_and_never_hit(void **stat
 }
 #endif
 
+/* --- a scene as a source --- */
+
+static aset_status emit_scene(const aset_sink *sink, const void *context) {
+    return aset_scene_emit(sink, context);
+}
+
+/* What comes out goes into another scene, which is the same but for roundings of normals, made unit length once more. */
+static void test_scene__is_a_source(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 6; i++) {
+        random_state r = random_start(seed_of(i));
+        model m;
+        stage a, b;
+        model_random(&m, &r, 80, 5, 0.1, 4);
+        stage_open_model(&a, &m, 0);
+        stage_open(&b, emit_scene, &a.scene, 0);
+        const aset_counts *n = &a.scene.counts;
+        assert_memory_equal(n, &b.scene.counts, sizeof *n);
+        assert_memory_equal(a.scene.objects, b.scene.objects, n->objects * sizeof *a.scene.objects);
+        assert_memory_equal(a.scene.materials, b.scene.materials, n->materials * sizeof *a.scene.materials);
+        assert_memory_equal(a.scene.lights, b.scene.lights, n->lights * sizeof *a.scene.lights);
+        assert_memory_equal(&a.scene.background, &b.scene.background, sizeof a.scene.background);
+        for (uint64_t k = 0; k < n->coordinates; k++) {
+            double difference = (double)a.scene.coordinates[k] - (double)b.scene.coordinates[k];
+            check(fabs(difference) <= 4 * (double)REAL_UNIT, SEED ", coordinate %" PRIu64, r.seed, k);
+        }
+        for (uint32_t k = 0; k < n->objects; k++) {
+            aset_vec3 low[2], high[2];
+            aset_object_bounds(&a.scene, k, &low[0], &high[0]);
+            aset_object_bounds(&b.scene, k, &low[1], &high[1]);
+            assert_memory_equal(&low[0], &low[1], sizeof low[0]);
+            assert_memory_equal(&high[0], &high[1], sizeof high[0]);
+        }
+        stage_close(&b);
+        stage_close(&a);
+        model_free(&m);
+    }
+}
+
+/* The sink's answer ends it, and the view comes along. */
+static void test_scene__as_a_source_stops_when_told(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(7));
+    model m;
+    stage a;
+    aset_counter counter;
+    aset_sink sink = aset_counter_sink(&counter);
+    const aset_view view = {.from = {0, -9, 0}, .at = {0, 0, 0}, .up = {0, 0, 1}, .angle_deg = 40};
+    model_random(&m, &r, 20, 5, 0.1, 4);
+    stage_open_model(&a, &m, 0);
+    aset_sink to = aset_scene_sink(&a.scene);
+    assert_int_equal(to.view(to.context, &view), ASET_OK);
+    assert_int_equal(aset_scene_emit(&sink, &a.scene), ASET_OK);
+    assert_true(counter.has_view && counter.view.angle_deg == 40);
+    assert_int_equal(aset_scene_emit(&to, &a.scene), ASET_ERR_NOMEM); /* into itself, which is full */
+    assert_int_equal(aset_scene_emit(NULL, &a.scene), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_scene_emit(&sink, NULL), ASET_ERR_ARGUMENT);
+    stage_close(&a);
+    model_free(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_scene__is_a_source),
+        cmocka_unit_test(test_scene__as_a_source_stops_when_told),
         cmocka_unit_test(test_scene__counter_equals_builder),
         cmocka_unit_test(test_scene__counter_equals_builder_on_procedural_scenes),
         cmocka_unit_test(test_scene__polygons_take_what_the_macros_say),

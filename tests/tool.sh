@@ -572,6 +572,31 @@ budget_approximate() {
     done
 }
 
+# With everything approximate no object is held, with more and with less memory; the picture and the counts are those of a render
+# that holds all (whose eye and shadow rays are all that there are).
+flat_is_streamed() {
+    local scene method key
+    for scene in balls tetra; do
+        for method in mset grid; do
+            works render "$scenes/$scene.nff" -m $method --grid 20 --approx primary,shadow --approx-depth 0 --depth 1 -s 24x24 \
+                --stats a.json -o a.ppm
+            need_of "$scenes/$scene.nff" -m $method --grid 20 --approx all --approx-depth 0 --depth 1 -s 24x24 --memory 1
+            for memory in $need 1M; do
+                works render "$scenes/$scene.nff" -m $method --grid 20 --approx all --approx-depth 0 --depth 1 -s 24x24 \
+                    --memory "$memory" --stats b.json -o b.ppm
+                same a.ppm b.ppm "$scene, $method, $memory: another picture than with the objects"
+                for key in structure rays work textures scene; do
+                    [ "$(json a.json $key)" = "$(json b.json $key)" ] ||
+                        fail "$scene, $method, $memory: $key $(json b.json $key) instead of $(json a.json $key)"
+                done
+                for key in objects vertices references voxels; do
+                    [ "$(json b.json memory $key)" = 0 ] || fail "$scene, $method: $(json b.json memory $key) bytes of $key"
+                done
+            done
+        done
+    done
+}
+
 budget_of_two_threads() {
     local one
     exact_budget "$scenes/balls.nff" --grid 12 -j 1
@@ -588,6 +613,11 @@ budget_is_what_info_says() {
     exact_budget "$scenes/balls.nff" --grid 12 --approx all
     works info "$scenes/balls.nff" --grid 12
     grep '^mset' "$out" | grep -qw "$need" || fail "info does not say $need for mset: $(grep '^mset' "$out")"
+    for method in mset grid; do
+        exact_budget "$scenes/balls.nff" --grid 12 --approx all --approx-depth 0 -m $method
+        works info "$scenes/balls.nff" --grid 12
+        grep -A 3 "^$method" "$out" | grep -q "no object held: $need bytes" || fail "info does not say $need: $(cat "$out")"
+    done
 }
 
 # Less and less memory makes the grid coarser and never the picture wrong, until the need is told, which then is enough.
@@ -1099,7 +1129,7 @@ help_and_version wrong_commands wrong_options wrong_values bad_missing_file bad_
 bad_folder bad_unknown_extension bad_name_is_one_line bad_picture_for_a_scene bad_long_word
 bad_scene_on_standard_input bad_cut_off_files bad_prefixes bad_letters_for_numbers bad_nan_and_infinity bad_counts
 bad_announced_but_missing_points bad_order bad_views bad_objects bad_camera_options extreme_coordinates
-scene_text_is_read_freely budget_exact budget_approximate budget_of_two_threads budget_is_what_info_says
+scene_text_is_read_freely budget_exact budget_approximate flat_is_streamed budget_of_two_threads budget_is_what_info_says
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
 scene_into_render compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
 full_disk file_size_limit closed_pipe outputs_that_cannot_be old_output interrupted progress_bar

@@ -285,3 +285,33 @@ aset_status tool_bake(tool_baking *baking, tool_source *source, const aset_bake_
     baking->report = baker.report;
     return status;
 }
+
+/* One reading into the builder. */
+static aset_status flat_pass(tool_flat *f, tool_source *source, aset_flat *flat, bool *again) {
+    tool_batch batch;
+    aset_sink to = aset_flat_sink(flat), sink = tool_batch_sink(&batch, &to, NULL);
+    double start = tool_seconds();
+    f->told = !tool_source_read(source, &sink);
+    aset_status status = f->told ? ASET_ERR_SYNTAX : tool_batch_end(&batch);
+    f->load_s += tool_seconds() - start - batch.seconds;
+    start = tool_seconds();
+    if (status == ASET_OK) {
+        status = aset_flat_pass(flat, again);
+    }
+    f->build_s += batch.seconds + tool_seconds() - start;
+    return status;
+}
+
+aset_status tool_flatten(tool_flat *flat, tool_source *source, const aset_counter *counter, const aset_method *method,
+                         const aset_space_options *options, aset_arena *arena) {
+    aset_flat maker;
+    bool again = true;
+    flat->load_s = flat->build_s = 0;
+    flat->told = false;
+    aset_status status = aset_flat_init(&maker, arena, counter, method, options);
+    while (status == ASET_OK && again) {
+        status = flat_pass(flat, source, &maker, &again);
+    }
+    flat->least = status == ASET_OK ? maker.least : 0;
+    return status == ASET_OK ? aset_flat_finish(flat->stage, flat->space, flat->summary, &maker) : status;
+}

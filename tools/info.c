@@ -8,7 +8,7 @@
 static const char help[] =
     "aset info SCENE [--grid N]: counts, bounds, materials and lights of a scene, and the bytes each method needs.\n"
     "Of a model the counts and bounds are its own; the bytes include the ground and the lights that render adds. The row\n"
-    "draft is for --cells plane.\n"
+    "draft is for --cells plane. Everything approximate is --approx all --approx-depth 0.\n"
     "\n"
     "      --grid N    divisions on every axis; or NXxNYxNZ, or auto; default auto\n"
     "      --octree-depth D, --leaf K   limits of octree, arts and excell; default 6, 1\n"
@@ -48,6 +48,13 @@ static bool print_method(measured *m, const char *path, const aset_method *metho
                  aset_method_name(method), size.divisions[0], size.divisions[1], size.divisions[2], exact, approximate);
     (void)printf("            scene %zu, scratch %zu, cells %zu, references %zu, voxels %zu, textures %zu, building %zu\n",
                  m->scene_bytes, scratch, size.cells, size.references, size.voxels, summary, size.scratch);
+    if (tool_streams(method, ASET_ALL_KINDS, 0)) {
+        size_t flat = 0;
+        if (!measured_flat(m, path, method, options, &flat)) {
+            return false;
+        }
+        (void)printf("            everything approximate, no object held: %zu bytes\n", scratch + flat);
+    }
     (void)printf("            %" PRIu32 " blocks, %" PRIu32 " cells not empty, %" PRIu32 " references, density %.2f\n",
                  size.n_blocks, size.n_cells, size.n_references,
                  size.n_cells > 0 ? (double)size.n_references / (double)size.n_cells : 0.0);

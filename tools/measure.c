@@ -26,6 +26,8 @@ bool measured_open(measured *m, tool_source *source, const aset_counts *counts) 
         free(m->block);
         return false;
     }
+    sink = aset_counter_sink(&m->counter);
+    (void)aset_scene_emit(&sink, &m->scene); /* what a scene has taken a counter takes */
     return true;
 }
 
@@ -65,4 +67,46 @@ bool measured_space(measured *m, const char *path, const aset_method *method, co
         return false;
     }
     return true;
+}
+
+bool tool_streams(const aset_method *method, uint32_t approx_kinds, uint32_t approx_depth) {
+    return approx_kinds == ASET_ALL_KINDS && approx_depth == 0 && (method == &aset_mset || method == &aset_grid);
+}
+
+/* Makes the flat one in size bytes. On ASET_ERR_NOMEM *size is enough for the next try; on ASET_OK it is the least. */
+static aset_status try_flat(const measured *m, const aset_method *method, const aset_space_options *options, size_t *size) {
+    aset_arena arena;
+    aset_flat flat;
+    bool again = true;
+    void *block = malloc(*size);
+    aset_status status = block != NULL ? aset_arena_init(&arena, block, *size) : ASET_ERR_LIMIT;
+    if (status == ASET_OK) {
+        status = aset_flat_init(&flat, &arena, &m->counter, method, options);
+    }
+    while (status == ASET_OK && again) {
+        aset_sink sink = aset_flat_sink(&flat);
+        status = aset_scene_emit(&sink, &m->scene);
+        status = status == ASET_OK ? aset_flat_pass(&flat, &again) : status;
+    }
+    *size = status == ASET_OK ? flat.least : status == ASET_ERR_NOMEM ? *size + arena.missing : *size;
+    free(block);
+    return status;
+}
+
+bool measured_flat(const measured *m, const char *path, const aset_method *method, const aset_space_options *options,
+                   size_t *bytes) {
+    aset_space_options chosen = *options;
+    aset_status status = ASET_ERR_NOMEM;
+    if (chosen.divisions[0] == 0) {
+        aset_auto_divisions(&m->scene, 0, chosen.divisions);
+    }
+    *bytes = *bytes > 0 ? *bytes : SCRATCH;
+    while (status == ASET_ERR_NOMEM) {
+        status = try_flat(m, method, &chosen, bytes);
+    }
+    if (status != ASET_OK) {
+        tool_error(path, 0, "%s: %s", aset_method_name(method),
+                   status == ASET_ERR_LIMIT ? "the machine has no memory to measure its cells" : aset_status_text(status));
+    }
+    return status == ASET_OK;
 }

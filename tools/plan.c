@@ -12,7 +12,8 @@ static const char help[] =
     "      --error DB       the fastest setting of at least this PSNR against the exact picture\n"
     "      --time MS        the most accurate setting within this time on this machine, build and picture\n"
     "                       (neither: the most accurate that fits, and of equals the fastest)\n"
-    "      --header FILE    write the sizes of this scene and setting, and the switches it needs, as a C header\n"
+    "      --header FILE    write the sizes of this scene and setting, and the switches it needs, as a C header: of a program\n"
+    "                       that holds the scene, as render does not where everything is approximate\n"
     "  -s, --size WxH       the picture; default the scene's, else 512x512\n"
     "      --depth N        rays in a chain; default 5\n"
     "      --all            print every setting that was probed, before the one chosen\n"
@@ -87,6 +88,7 @@ static bool plan_from(const request *r, tool_source *source) {
         return false;
     }
     plan_wish wish = r->wish;
+    wish.holds_scene = r->header != NULL;
     const aset_view *view = &m.scene.view;
     if (wish.width == 0) {
         wish.width = view->width_px > 0 ? view->width_px : 512;

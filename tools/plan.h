@@ -11,7 +11,7 @@ typedef struct plan_setting {
     uint32_t approx_kinds, approx_depth;
     uint32_t textures; /* in the summary's list; 0: exact */
     aset_space_size size;
-    size_t bytes;      /* of the arena, all told */
+    size_t bytes;      /* of the arena, all told; with everything approximate of what `aset render` streams */
     double seconds;    /* expected for the whole picture, build included */
     double psnr;       /* expected, dB; METRICS_PSNR_MAX for exact */
     bool fits;
@@ -22,6 +22,7 @@ typedef struct plan_wish {
     uint64_t memory;
     double error_db, time_ms;
     uint32_t width, height, depth;
+    bool holds_scene; /* the bytes are those of a program that holds the scene, whatever is approximate */
 } plan_wish;
 
 enum { PLAN_SETTINGS_MAX = 64 };

@@ -59,7 +59,8 @@ typedef struct built {
     aset_summary summary;
     aset_space_size size;
     double space_s, summary_s; /* to build */
-    size_t summary_bytes;
+    size_t summary_bytes, flat_bytes; /* flat_bytes: of a streamed picture; 0: it is none, or does not fit */
+    double flat_s;                    /* to make that in just these bytes */
 } built;
 
 typedef struct sample {
@@ -126,14 +127,36 @@ static bool build(built *b, const probing *q, const aset_method *method, const u
     return true;
 }
 
-static double build_seconds(const built *b, uint32_t kinds) {
-    return b->space_s + (kinds != 0 ? b->summary_s : 0);
+static bool is_streamed(const built *b, const aset_method *method, uint32_t kinds, uint32_t depth) {
+    return b->flat_bytes > 0 && tool_streams(method, kinds, depth);
+}
+
+static double build_seconds(const built *b, const aset_method *method, uint32_t kinds, uint32_t depth) {
+    return is_streamed(b, method, kinds, depth) ? b->flat_s : b->space_s + (kinds != 0 ? b->summary_s : 0);
 }
 
 /* What the arena takes in all: a summary may stand where the building scratch was. */
 static size_t bytes_of(const probing *q, const aset_space_size *size, size_t summary) {
     size_t kept = size->cells + size->references + size->voxels + summary;
     return q->m->scene_bytes + ASET_BYTES_SCRATCH(q->wish->depth) + (kept > size->total ? kept : size->total);
+}
+
+/* Bytes and seconds of the streamed picture, if it may fit. */
+static bool measure_flat(built *b, const probing *q, const aset_method *method, const uint32_t grid[3]) {
+    aset_space_options options = options_of(grid);
+    b->flat_bytes = 0;
+    if (q->wish->holds_scene || !tool_streams(method, ASET_ALL_KINDS, 0) ||
+        b->size.cells + ASET_BYTES_SCRATCH(q->wish->depth) > q->wish->memory) {
+        return true;
+    }
+    if (!measured_flat(q->m, q->path, method, &options, &b->flat_bytes)) {
+        return false;
+    }
+    double start = cpu_seconds();
+    bool done = measured_flat(q->m, q->path, method, &options, &b->flat_bytes);
+    b->flat_s = cpu_seconds() - start;
+    b->flat_bytes += ASET_BYTES_SCRATCH(q->wish->depth);
+    return done;
 }
 
 /* --- pixels --- */
@@ -305,8 +328,10 @@ static void probe_levels(plan *p, probing *q, const built *b, const aset_method 
         s->approx_depth = levels[i].depth;
         s->textures = i == 0 ? 0 : b->summary.n_textures;
         s->size = b->size;
-        s->bytes = bytes_of(q, &b->size, i == 0 ? 0 : b->summary_bytes);
-        s->seconds = build_seconds(b, levels[i].kinds) + seconds * pixels(q) / sample_pixels(q);
+        s->bytes = is_streamed(b, method, s->approx_kinds, s->approx_depth)
+                       ? b->flat_bytes
+                       : bytes_of(q, &b->size, i == 0 ? 0 : b->summary_bytes);
+        s->seconds = build_seconds(b, method, s->approx_kinds, s->approx_depth) + seconds * pixels(q) / sample_pixels(q);
         s->psnr = METRICS_PSNR_MAX;
         s->fits = s->bytes <= q->wish->memory;
         if (i > 0) {
@@ -319,9 +344,10 @@ static void probe_levels(plan *p, probing *q, const built *b, const aset_method 
     }
 }
 
+/* Does an exact setting fit? */
 static bool any_fits(const plan *p) {
     for (int i = 0; i < p->n; i++) {
-        if (p->settings[i].fits) {
+        if (p->settings[i].fits && p->settings[i].approx_kinds == 0) {
             return true;
         }
     }
@@ -338,7 +364,10 @@ static bool any_quick(const plan *p) {
     return false;
 }
 
-/* A candidate's levels, if it fits. An approximation takes no fewer bytes, and is asked for only with an error or a time. */
+/*
+ * A candidate's levels, if any fits. Approximations are asked for only with an error or a time; they take no fewer bytes
+ * than the exact picture, but where everything is approximate and no object is held.
+ */
 static bool probe(plan *p, probing *q, const aset_method *method, const uint32_t grid[3]) {
     built b;
     aset_space_options options = options_of(grid);
@@ -346,7 +375,12 @@ static bool probe(plan *p, probing *q, const aset_method *method, const uint32_t
     if (!measured_space(q->m, q->path, method, &options, &b.size, NULL)) {
         return false;
     }
-    if (bytes_of(q, &b.size, 0) > q->wish->memory) {
+    b.flat_bytes = 0;
+    if (approximate && !measure_flat(&b, q, method, grid)) {
+        return false;
+    }
+    bool fits_flat = b.flat_bytes > 0 && b.flat_bytes <= q->wish->memory;
+    if (bytes_of(q, &b.size, 0) > q->wish->memory && !fits_flat) {
         return true;
     }
     if (!build(&b, q, method, grid, approximate)) {
@@ -496,6 +530,10 @@ static pair draw_pair(probing *q, const built *b, const plan_setting *s) {
 static bool build_pair(probing *q, built *b, const plan_setting *s) {
     built again = q->unit;
     b->size = s->size;
+    b->flat_bytes = 0;
+    if (tool_streams(s->method, s->approx_kinds, s->approx_depth) && !measure_flat(b, q, s->method, s->grid)) {
+        return false;
+    }
     if (!build(b, q, s->method, s->grid, s->approx_kinds != 0)) {
         return false;
     }
@@ -522,7 +560,7 @@ static bool build_pair(probing *q, built *b, const plan_setting *s) {
 static void settle(plan *p, probing *q, int chosen, const built *b, const pair *rate, bool first) {
     plan_setting *s = &p->settings[chosen];
     double unit_s = q->unit.space_s + rate->unit * pixels(q);
-    double other_s = build_seconds(b, s->approx_kinds) + rate->other * pixels(q);
+    double other_s = build_seconds(b, s->method, s->approx_kinds, s->approx_depth) + rate->other * pixels(q);
     if (first) {
         for (int i = 0; i < p->n; i++) {
             p->settings[i].seconds *= unit_s / p->exact_seconds;

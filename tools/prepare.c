@@ -1,7 +1,7 @@
 /*
  * prepare.c - a scene, a space over it, its summary and the threads' scratches, all in one arena of the size asked for.
  *
- * The file is read once to count, then to build in exactly the bytes counted; a draft reads it as often as the baker asks.
+ * The file is read once to count, then to build in exactly the bytes counted; what streams is read as often as is asked for.
  */
 #include "prepare.h"
 
@@ -54,6 +54,13 @@ static aset_space_options space_options(const settings *s, const aset_scene *sce
     return options;
 }
 
+static aset_space_options flat_options(const settings *s) {
+    aset_space_options options;
+    memset(&options, 0, sizeof options);
+    memcpy(options.divisions, s->grid, sizeof options.divisions);
+    return options;
+}
+
 /* The error of a budget that is too small: how much would do; for what is automatic, at its coarsest. */
 static void tell_need(tool_source *source, const settings *s, const aset_counts *counts) {
     measured m;
@@ -75,10 +82,15 @@ static void tell_need(tool_source *source, const settings *s, const aset_counts 
     free(m.block);
 }
 
+/* Where background, view and lights are: with a streamed draft, its own. */
+static const aset_scene *stage_of(const prepared *p) {
+    return p->is_drafted && p->is_streamed ? &p->draft.stage : &p->scene;
+}
+
 /* A view for a scene: the file's, with the command line's changes. */
 static bool choose_view(prepared *p, const settings *s) {
     aset_view *view = &p->view;
-    *view = p->is_streamed ? p->draft.stage.view : p->scene.view;
+    *view = stage_of(p)->view;
     view->from = s->has_from ? s->from : view->from;
     view->at = s->has_at ? s->at : view->at;
     view->up = s->has_up ? s->up : view->up;
@@ -122,8 +134,8 @@ static void take_aids(prepared *p, const settings *s) {
 static void choose_tracer(prepared *p, const settings *s) {
     aset_tracer *t = &p->tracer;
     memset(t, 0, sizeof *t);
-    t->scene = p->is_streamed ? &p->draft.stage : &p->scene;
-    t->space = p->is_streamed ? NULL : &p->space;
+    t->scene = stage_of(p);
+    t->space = p->is_drafted && p->is_streamed ? NULL : &p->space;
     t->summary = approximates(s) && !p->is_drafted ? &p->summary : NULL;
     t->draft = p->is_drafted ? &p->draft : NULL;
     t->draft_sides = s->cells == CELLS_NORMAL;
@@ -150,13 +162,31 @@ static aset_status bake(prepared *p, const settings *s, tool_source *source, boo
     return status;
 }
 
-/* No object is kept: scratches and the draft alone. */
-static aset_status fill_streamed(prepared *p, const settings *s, tool_source *source, bool *told) {
+/* Space and summary straight from the source. */
+static aset_status flatten(prepared *p, const settings *s, tool_source *source, const aset_counter *counter, bool *told) {
+    tool_flat flat;
+    aset_space_options options = flat_options(s);
+    flat.stage = &p->scene;
+    flat.space = &p->space;
+    flat.summary = &p->summary;
+    aset_status status = tool_flatten(&flat, source, counter, s->method, &options, &p->arena);
+    *told = flat.told;
+    p->load_s += flat.load_s;
+    p->build_s += flat.build_s;
+    return status;
+}
+
+/* No object is held: scratches, and the draft or the cells. */
+static aset_status fill_streamed(prepared *p, const settings *s, tool_source *source, const aset_counter *counter,
+                                 bool *told) {
     aset_status status = ASET_OK;
     for (uint32_t i = 0; i < s->threads && status == ASET_OK; i++) {
         status = aset_scratch_init(&p->scratches[i], s->depth, &p->arena);
     }
-    return status == ASET_OK ? bake(p, s, source, told) : status;
+    if (status != ASET_OK) {
+        return status;
+    }
+    return p->is_drafted ? bake(p, s, source, told) : flatten(p, s, source, counter, told);
 }
 
 /* Scene, scratches, space and summary in the arena. */
@@ -203,7 +233,8 @@ static bool take_block(prepared *p, const settings *s) {
  * The error line of a draft in too little memory. What is missing is known better with each try: so until it is enough. missing:
  * of the try before.
  */
-static void tell_draft_need(const prepared *p, const settings *s, tool_source *source, size_t missing) {
+static void tell_draft_need(const prepared *p, const settings *s, tool_source *source, const aset_counter *counter,
+                            size_t missing) {
     settings rich = *s;
     aset_status status = ASET_ERR_NOMEM;
     bool told = false;
@@ -215,13 +246,45 @@ static void tell_draft_need(const prepared *p, const settings *s, tool_source *s
         rich.memory += missing;
         told = !take_block(&more, &rich);
         status = told            ? ASET_ERR_ARGUMENT
-                 : p->is_streamed ? fill_streamed(&more, &rich, source, &told)
-                                  : fill_arena(&more, &rich, source, &p->counts, &told);
+                 : p->is_streamed ? fill_streamed(&more, &rich, source, counter, &told)
+                                  : fill_arena(&more, &rich, source, &counter->counts, &told);
         missing = more.arena.missing;
         prepare_free(&more);
     }
     if (!told) {
         tool_error(source->path, 0, "the draft needs %" PRIu64 " bytes, has %" PRIu64, rich.memory, s->memory);
+    }
+}
+
+/* Memory in which the need of a streamed flat picture is looked for, if that is enough. */
+#define FLAT_BYTES ((size_t)16 << 20)
+
+/*
+ * The error of a budget too small for a streamed flat picture, with automatic divisions at their coarsest: found by making
+ * it in more.
+ */
+static void tell_flat_need(const settings *s, tool_source *source, const aset_counter *counter) {
+    aset_scene stage;
+    aset_space space;
+    aset_summary summary;
+    aset_arena arena;
+    tool_flat flat = {&stage, &space, &summary, 0, 0, 0, false};
+    aset_space_options options = flat_options(s);
+    aset_status status = ASET_ERR_NOMEM;
+    if (options.divisions[0] == 0) {
+        options.divisions[0] = options.divisions[1] = options.divisions[2] = 1;
+    }
+    for (size_t size = FLAT_BYTES; status == ASET_ERR_NOMEM; size += arena.missing) {
+        void *block = malloc(size);
+        status = block != NULL ? aset_arena_init(&arena, block, size) : ASET_ERR_LIMIT;
+        status = status == ASET_OK ? tool_flatten(&flat, source, counter, s->method, &options, &arena) : status;
+        free(block);
+    }
+    if (status == ASET_OK) {
+        tool_error(source->path, 0, "the picture needs %zu bytes, has %" PRIu64, scratch_bytes(s) + flat.least, s->memory);
+    } else if (!flat.told) {
+        tool_error(source->path, 0, "%s",
+                   status == ASET_ERR_LIMIT ? "the machine has no memory for so many cells" : aset_status_text(status));
     }
 }
 
@@ -241,11 +304,13 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
     bool told = false;
     p->counts = counter.counts;
     p->is_drafted = approximates(s) && s->cells != CELLS_FLAT;
-    p->is_streamed = p->is_drafted && s->approx_kinds == ASET_ALL_KINDS && s->approx_depth == 0;
-    aset_status status = p->is_streamed ? fill_streamed(p, s, source, &told)
+    p->is_streamed = tool_streams(s->method, s->approx_kinds, s->approx_depth);
+    aset_status status = p->is_streamed ? fill_streamed(p, s, source, &counter, &told)
                                         : fill_arena(p, s, source, &counter.counts, &told);
     if (status == ASET_ERR_NOMEM && p->is_drafted) {
-        tell_draft_need(p, s, source, p->arena.missing);
+        tell_draft_need(p, s, source, &counter, p->arena.missing);
+    } else if (status == ASET_ERR_NOMEM && p->is_streamed) {
+        tell_flat_need(s, source, &counter);
     } else if (status == ASET_ERR_NOMEM) {
         tell_need(source, s, &counter.counts);
     } else if (status != ASET_OK && !told) {

@@ -47,7 +47,7 @@ typedef struct prepared {
     aset_space space;
     aset_summary summary;
     aset_draft draft;
-    bool is_drafted, is_streamed; /* there is a draft; and there is nothing else */
+    bool is_drafted, is_streamed; /* there is a draft; no object is held but those that a draft keeps */
     aset_counts counts;           /* of the source */
     aset_scratch *scratches; /* one for each thread, */
     aset_beams *beams;       /* and these, if there is room for them */
@@ -130,6 +130,20 @@ typedef struct tool_baking {
 /* Bakes what the source holds, in the arena's free bytes, with as many readings as that takes. */
 aset_status tool_bake(tool_baking *baking, tool_source *source, const aset_bake_options *options, aset_arena *arena);
 
+/* A flat picture's stage, space and summary, made without holding an object. */
+typedef struct tool_flat {
+    aset_scene *stage;
+    aset_space *space;
+    aset_summary *summary;
+    double load_s, build_s;
+    size_t least; /* bytes of the arena that would have been enough */
+    bool told;    /* the source has failed and said so */
+} tool_flat;
+
+/* Makes them of what the source holds and counter has counted, with as many readings as that takes. */
+aset_status tool_flatten(tool_flat *flat, tool_source *source, const aset_counter *counter, const aset_method *method,
+                         const aset_space_options *options, aset_arena *arena);
+
 /* Every method the tool knows; ends with NULL. */
 extern const aset_method *const tool_methods[];
 const aset_method *tool_method_find(const char *name);
@@ -142,6 +156,7 @@ typedef struct measured {
     void *block;
     aset_arena arena;
     aset_scene scene;
+    aset_counter counter; /* of what is in it */
     size_t scene_bytes;
 } measured;
 
@@ -149,6 +164,15 @@ bool measured_open(measured *m, tool_source *source, const aset_counts *counts);
 /* The space's size and, unless summary_bytes is NULL, the summary's; false after an error line. */
 bool measured_space(measured *m, const char *path, const aset_method *method, const aset_space_options *options,
                     aset_space_size *size, size_t *summary_bytes);
+
+/* Can a flat picture of these settings be made without holding an object? */
+bool tool_streams(const aset_method *method, uint32_t approx_kinds, uint32_t approx_depth);
+/*
+ * The least bytes that stage, space and summary then take, found by making them, in *bytes if that is not 0; false after an
+ * error line.
+ */
+bool measured_flat(const measured *m, const char *path, const aset_method *method, const aset_space_options *options,
+                   size_t *bytes);
 
 /* Loads, builds and sets up everything within settings->memory bytes. False after an error line; then nothing is held. */
 bool prepare(prepared *p, const settings *s, const char *path);

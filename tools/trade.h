@@ -103,7 +103,7 @@ void trade_free(trade *t);
 
 /* --- trade_run.c --- */
 
-/* Whether it is a draft and nothing else: no scene and no space, the source goes straight into the baker. */
+/* Whether no scene is held: the source goes straight into the baker, or into flat cells. */
 bool trade_is_streamed(const trade_setting *s);
 /* Finds a draft's need by baking it. need holds what is needed without the draft before, and all of it afterwards. */
 bool trade_find_need(trade_setting *s);

@@ -255,13 +255,19 @@ static bool plan_space(trade *t, const trade_words *w, trade_group *group, const
     if (!measured_space(&scene->loaded, scene->name, method, &options, &size, &summary)) {
         return false;
     }
+    size_t flat = 0;
+    if (tool_streams(method, ASET_ALL_KINDS, 0) && (w->cells >> CELLS_FLAT & 1) != 0 &&
+        !measured_flat(&scene->loaded, scene->name, method, &options, &flat)) {
+        return false;
+    }
     size_t built = size.cells + size.references + size.voxels + summary, scratch = ASET_BYTES_SCRATCH(ASET_DEPTH_DEFAULT);
     unsigned n_approxes = (w->cells >> CELLS_FLAT & 1) != 0 ? TRADE_APPROXES : 1;
     for (unsigned approx = 0; approx < n_approxes; approx++) {
         for (size_t c = 0; c < (approx == TRADE_EXACT ? 1 : sizeof curtails / sizeof curtails[0]); c++) {
             trade_setting *s = add_setting(t, group, method, &options, approx);
             s->curtail = curtails[c];
-            s->need = scratch + (approx != TRADE_EXACT && built > size.total ? built : size.total);
+            size_t held = approx != TRADE_EXACT && built > size.total ? built : size.total;
+            s->need = scratch + (trade_is_streamed(s) ? flat : held);
         }
     }
     return (method != &aset_mset && method != &aset_grid) || plan_drafts(t, w, group, method, &options, &size);

@@ -3,8 +3,8 @@
  * need.
  *
  * The scene stays loaded in an arena of its own. Allocations only add up, so the scene's bytes and the second arena's are
- * together those of the one arena that `aset render --memory` would need, not one more: they are the setting's peak. A
- * streamed draft has no scene in its arena, and none counted. The block is the same for all settings and was written to
+ * together those of the one arena that `aset render --memory` would need, not one more: they are the setting's peak. What
+ * is streamed, a draft or flat cells, has no scene in its arena, and none counted. The block is the same for all settings and was written to
  * before, so that no setting pays for fresh pages.
  *
  * A draft's need is found by trying: the baker goes by the room that it has, and takes more passes over the source where
@@ -28,13 +28,14 @@ typedef struct drawing {
     aset_space space;
     aset_summary summary;
     aset_draft draft;
-    double reading_s; /* of the source, while baking */
+    aset_scene stage; /* of flat cells that are streamed */
+    double reading_s; /* of the source, while baking or streaming */
     bool told;        /* the source has failed and said so */
 } drawing;
 
 bool trade_is_streamed(const trade_setting *s) {
     const trade_approx *approx = &trade_approxes[s->approx];
-    return s->cells != CELLS_FLAT && approx->mask == ASET_ALL_KINDS && approx->level == 0;
+    return tool_streams(s->method, approx->mask, approx->level);
 }
 
 /* One reading into the baker. */
@@ -66,6 +67,19 @@ static aset_status bake(const trade_setting *s, drawing *d) {
     return status;
 }
 
+static aset_status flatten(const trade_setting *s, drawing *d, const aset_space_options *options) {
+    trade_scene *scene = s->group->scene;
+    tool_flat flat;
+    flat.stage = &d->stage;
+    flat.space = &d->space;
+    flat.summary = &d->summary;
+    scene->source.stage.aspect = (aset_real)s->group->width / (aset_real)s->group->height;
+    aset_status status = tool_flatten(&flat, &scene->source, &scene->loaded.counter, s->method, options, &d->arena);
+    d->reading_s += flat.load_s;
+    d->told = flat.told;
+    return status;
+}
+
 /* In the order of `aset render`. d is all zeros but for the arena. */
 static aset_status build(const trade_setting *s, drawing *d) {
     const aset_scene *scene = &s->group->scene->loaded.scene;
@@ -74,6 +88,9 @@ static aset_status build(const trade_setting *s, drawing *d) {
     memcpy(options.divisions, s->grid, sizeof options.divisions);
     options.depth = s->tree_depth;
     aset_status status = aset_scratch_init(&d->scratch, ASET_DEPTH_DEFAULT, &d->arena);
+    if (status == ASET_OK && trade_is_streamed(s) && s->cells == CELLS_FLAT) {
+        return flatten(s, d, &options);
+    }
     if (status == ASET_OK && !trade_is_streamed(s)) {
         status = aset_space_build(&d->space, scene, s->method, &options, &d->arena);
     }
@@ -89,13 +106,14 @@ static aset_status render(const trade_setting *s, drawing *d, uint8_t *pixels, a
     const trade_group *group = s->group;
     const trade_approx *approx = &trade_approxes[s->approx];
     bool is_drafted = s->cells != CELLS_FLAT, is_streamed = trade_is_streamed(s);
+    const aset_scene *stage = is_drafted ? &d->draft.stage : &d->stage;
     aset_tracer tracer;
     aset_picture picture;
-    aset_view view = is_streamed ? d->draft.stage.view : group->view;
+    aset_view view = is_streamed ? stage->view : group->view;
     memset(&tracer, 0, sizeof tracer);
     memset(&picture, 0, sizeof picture);
-    tracer.scene = is_streamed ? &d->draft.stage : &group->scene->loaded.scene;
-    tracer.space = is_streamed ? NULL : &d->space;
+    tracer.scene = is_streamed ? stage : &group->scene->loaded.scene;
+    tracer.space = is_streamed && is_drafted ? NULL : &d->space;
     tracer.summary = s->approx != TRADE_EXACT && !is_drafted ? &d->summary : NULL;
     tracer.draft = is_drafted ? &d->draft : NULL;
     tracer.draft_sides = s->cells == CELLS_NORMAL;

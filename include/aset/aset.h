@@ -28,6 +28,7 @@
 #include "aset/stage.h"
 #include "aset/space.h"
 #include "aset/summary.h"
+#include "aset/flat.h"
 #include "aset/draft.h"
 #include "aset/reach.h"
 #include "aset/beams.h"

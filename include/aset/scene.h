@@ -145,8 +145,14 @@ aset_status aset_scene_init(aset_scene *scene, aset_arena *arena, const aset_cou
  */
 aset_sink aset_scene_sink(aset_scene *scene);
 
-/* The box of all objects. False, and the box untouched, while there is none. */
+/* The box of all objects, a stage's (flat.h) too, which holds none. False, and the box untouched, while there is none. */
 bool aset_scene_bounds(const aset_scene *scene, aset_vec3 *low, aset_vec3 *high);
+
+/*
+ * Gives what is in the scene to a sink: a scene is a source, too. Directions are of unit length, as the scene keeps them.
+ * ASET_OK, or the sink's first error.
+ */
+aset_status aset_scene_emit(const aset_sink *sink, const aset_scene *scene);
 
 /* The box of one object (number below counts.objects), without any margin: a cone's is the exact box of its two discs. */
 void aset_object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high);

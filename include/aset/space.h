@@ -188,6 +188,7 @@ typedef struct aset_space {
     const aset_method *method;
     const struct aset_answers *answers; /* exact rays */
     const aset_scene *scene;
+    bool is_flat; /* without references and objects (flat.h): for approximate rays alone */
     aset_structure structure;
     aset_slices slices;
     aset_cells cells;

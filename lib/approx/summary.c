@@ -18,19 +18,17 @@
 #define AUTO_TEXTURES_MAX 4096u
 #define AUTO_TEXTURES_PER_MATERIAL 32u
 
-uint32_t aset_summary_capacity(const aset_scene *scene) {
+uint32_t summary_capacity(uint32_t n_materials) {
     uint32_t capacity = AUTO_TEXTURES_MIN;
-    while (capacity < AUTO_TEXTURES_MAX && capacity / AUTO_TEXTURES_PER_MATERIAL < scene->counts.materials) {
+    while (capacity < AUTO_TEXTURES_MAX && capacity / AUTO_TEXTURES_PER_MATERIAL < n_materials) {
         capacity *= 2;
     }
     return capacity;
 }
 
-/*
- * Averages met lately, by a hash of their sums' parts: most cells are like one seen before, and the list need not be
- * searched.
- */
-#define RECENT 64u
+uint32_t aset_summary_capacity(const aset_scene *scene) {
+    return summary_capacity(scene->counts.materials);
+}
 
 typedef struct filling {
     aset_summary *summary;
@@ -39,55 +37,40 @@ typedef struct filling {
     uint32_t room;
     texture_sum sum;
     uint32_t cell; /* the cell that sum belongs to */
-    aset_material recent[RECENT];
-    uint32_t number[RECENT]; /* of the texture in the list; counts only with known */
-    bool known[RECENT];
+    texture_recent recent;
 } filling;
 
-static unsigned texture_hash(const texture_sum *sum) {
-    uint64_t hash = 0;
-    for (int i = 0; i < TEXTURE_PARTS; i++) {
-        hash = (hash ^ (sum->parts[i] / sum->n)) * UINT64_C(0x9e3779b97f4a7c15);
-    }
-    return (unsigned)(hash >> 58); /* 0 to RECENT - 1 */
-}
-
 /* The first pass: the list grows until it is full. */
-static void enter_texture(filling *f, const aset_material *texture) {
+static void enter_texture(filling *f) {
     aset_summary *summary = f->summary;
+    unsigned slot = texture_slot(&f->sum);
+    aset_material texture = texture_average(&f->sum);
     uint32_t number;
-    if (texture_find(summary, texture, &number) || summary->n_textures == summary->capacity) {
+    if (f->recent.known[slot] && texture_equal(&texture, &f->recent.textures[slot])) {
+        return;
+    }
+    f->recent.textures[slot] = texture;
+    f->recent.known[slot] = true;
+    if (texture_find(summary, &texture, &number) || summary->n_textures == summary->capacity) {
         return;
     }
     if (summary->n_textures == f->room) {
         f->overflow = true;
         return;
     }
-    summary->textures[summary->n_textures++] = *texture;
+    summary->textures[summary->n_textures++] = texture;
 }
 
 static void finish_cell(filling *f) {
     if (f->sum.n == 0) {
         return;
     }
-    unsigned slot = texture_hash(&f->sum);
-    aset_material texture = texture_average(&f->sum);
+    if (f->numbers) { /* none is entered any more: those that are not in the list did not fit */
+        bits_put(f->summary->of_cell, f->summary->width, f->cell, texture_take(f->summary, &f->recent, &f->sum));
+    } else {
+        enter_texture(f);
+    }
     memset(&f->sum, 0, sizeof f->sum);
-    if (!f->known[slot] || !texture_equal(&texture, &f->recent[slot])) {
-        bool is_own = true;
-        if (f->numbers) {
-            is_own = texture_find(f->summary, &texture, &f->number[slot]);
-            f->number[slot] = is_own ? f->number[slot] : texture_nearest(f->summary, &texture);
-            f->summary->merged += !is_own;
-        } else {
-            enter_texture(f, &texture);
-        }
-        f->recent[slot] = texture;
-        f->known[slot] = is_own; /* one that had to share is counted each time */
-    }
-    if (f->numbers) {
-        bits_put(f->summary->of_cell, f->summary->width, f->cell, f->number[slot]);
-    }
 }
 
 static void look_at_cell(void *context, uint32_t cell, const uint32_t *objects, uint32_t n) {
@@ -115,7 +98,7 @@ static bool pass(aset_summary *summary, bool numbers, uint32_t room) {
 /* The first pass, in the arena's free bytes. On ASET_ERR_NOMEM missing is a bound: the list's length is not known then. */
 static aset_status list_textures(aset_summary *summary, const aset_space *space, uint32_t capacity, aset_arena *arena,
                                  size_t *bytes) {
-    if (summary == NULL || space == NULL || arena == NULL || capacity > ASET_TEXTURES_MAX) {
+    if (summary == NULL || space == NULL || arena == NULL || space->is_flat || capacity > ASET_TEXTURES_MAX) {
         return ASET_ERR_ARGUMENT;
     }
     size_t left = arena->size - arena->used, room = left / sizeof *summary->textures;

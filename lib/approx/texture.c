@@ -3,8 +3,8 @@
  * "search existing texture list for texture match").
  *
  * A part is kept in units of 2^-16 and below 2^24 (a Phong exponent of 10^5 takes 33 bits), so 2^23 objects may share a cell
- * before a sum could leave 64 bits; the most that a cell refers to is the number of objects, which 2^32 bounds: larger
- * sums are halved, which no scene that fits a memory reaches.
+ * before a sum could leave 64 bits, and more if exponents are smaller: fill's parts need 17 bits. A stream, which may have
+ * as many, is checked (flat_pass.c).
  */
 #include "approx/texture.h"
 
@@ -107,6 +107,35 @@ uint32_t texture_nearest(const aset_summary *summary, const aset_material *textu
         }
     }
     return nearest;
+}
+
+unsigned texture_slot(const texture_sum *sum) {
+    uint64_t hash = 0;
+    for (int i = 0; i < TEXTURE_PARTS; i++) {
+        hash = (hash ^ (sum->parts[i] / sum->n)) * UINT64_C(0x9e3779b97f4a7c15);
+    }
+    return (unsigned)(hash >> 58); /* 0 to TEXTURE_RECENT - 1 */
+}
+
+uint32_t texture_take(aset_summary *summary, texture_recent *recent, const texture_sum *sum) {
+    unsigned slot = texture_slot(sum);
+    aset_material texture = texture_average(sum);
+    if (recent->known[slot] && texture_equal(&texture, &recent->textures[slot])) {
+        return recent->number[slot];
+    }
+    uint32_t number = summary->n_textures;
+    bool is_own = texture_find(summary, &texture, &number);
+    if (!is_own && number < summary->capacity) {
+        summary->textures[summary->n_textures++] = texture;
+        is_own = true;
+    } else if (!is_own) {
+        number = texture_nearest(summary, &texture);
+        summary->merged++;
+    }
+    recent->textures[slot] = texture;
+    recent->number[slot] = number;
+    recent->known[slot] = is_own; /* one that had to share is counted each time */
+    return number;
 }
 
 #endif

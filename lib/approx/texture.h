@@ -27,5 +27,26 @@ bool texture_find(const aset_summary *summary, const aset_material *texture, uin
 /* The number of the texture in the summary's list, which is not empty, that looks most like this one. */
 uint32_t texture_nearest(const aset_summary *summary, const aset_material *texture);
 
+/*
+ * Averages met lately, by a hash of their sums' parts: most cells are like one seen before, and the list need not be
+ * searched. All zero: none.
+ */
+#define TEXTURE_RECENT 64u
+
+typedef struct texture_recent {
+    aset_material textures[TEXTURE_RECENT];
+    uint32_t number[TEXTURE_RECENT]; /* in the list; counts only with known */
+    bool known[TEXTURE_RECENT];
+} texture_recent;
+
+/* Where in it an average of this sum stands. */
+unsigned texture_slot(const texture_sum *sum);
+
+/*
+ * The number of a sum's average in the summary's list: it is entered if it is new and the list not full, else the nearest's
+ * number, and the cell is counted as merged. Cells come in dense order.
+ */
+uint32_t texture_take(aset_summary *summary, texture_recent *recent, const texture_sum *sum);
+
 #endif
 #endif

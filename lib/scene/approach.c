@@ -47,7 +47,7 @@ static aset_real distance_to(const probe *ray, aset_vec3 low, aset_vec3 high, as
 }
 
 aset_real approach_move(probe *ray, const aset_scene *scene) {
-    if (scene->counts.objects == 0) {
+    if (!(scene->margin > 0)) { /* it has no box */
         return 0;
     }
     aset_real moved = 0, near = NEAR * vec_largest(vec_sub(scene->high, scene->low));

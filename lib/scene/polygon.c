@@ -26,6 +26,10 @@ static const aset_real *points_of(const aset_real *at, uint32_t n, unsigned stri
     return at + head;
 }
 
+const aset_real *polygon_points(const aset_real *at, uint32_t n, unsigned stride, uint32_t *n_points) {
+    return points_of(at, n, stride, n_points);
+}
+
 /* Twice the area times the normal (Newell), from n_points points stride apart. */
 static aset_vec3 polygon_area(const aset_real *points, uint32_t n_points, unsigned stride) {
     aset_vec3 first = vec(points[0], points[1], points[2]), sum = vec(0, 0, 0), previous = sum;

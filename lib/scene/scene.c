@@ -346,7 +346,7 @@ aset_sink aset_scene_sink(aset_scene *scene) {
 }
 
 bool aset_scene_bounds(const aset_scene *scene, aset_vec3 *low, aset_vec3 *high) {
-    if (scene->counts.objects == 0) {
+    if (!(scene->margin > 0)) { /* no object has given it one */
         return false;
     }
     *low = vec_scale(scene->low, 1 / scene->scale);

@@ -79,6 +79,7 @@ aset_real scene_scale_for(aset_real largest);
  */
 aset_real polygon_nearest(const aset_real *at, uint32_t n, unsigned stride, const probe *ray, unsigned sides,
                           aset_real margin, aset_real limit);
+const aset_real *polygon_points(const aset_real *at, uint32_t n, unsigned stride, uint32_t *n_points);
 void polygon_bounds(const aset_real *at, uint32_t n, unsigned stride, aset_vec3 *low, aset_vec3 *high);
 aset_vec3 polygon_normal(const aset_real *at, uint32_t n, unsigned stride);
 #if ASET_WITH_PATCHES

@@ -12,4 +12,4 @@ static void arts_go(const aset_space *space, const probe *ray, walk_request *wal
     leaves_go(space, ray, walk, tree_find, true);
 }
 
-const aset_method aset_arts = {"arts", true, tree_measure, tree_build, arts_go, leaves_each};
+const aset_method aset_arts = {"arts", true, 0, tree_measure, tree_build, arts_go, leaves_each};

@@ -52,4 +52,4 @@ static void brute_each_cell(const aset_space *space, cell_look look, void *conte
     }
 }
 
-const aset_method aset_brute = {"brute", false, brute_measure, brute_build, brute_go, brute_each_cell};
+const aset_method aset_brute = {"brute", false, 0, brute_measure, brute_build, brute_go, brute_each_cell};

@@ -41,10 +41,7 @@ static uint64_t brick_marks(const voxel_box *box, uint32_t x, uint32_t y, uint32
     return marks;
 }
 
-/* Called for every block that a box touches, with the marks it sets there. */
-typedef void (*block_action)(void *context, uint32_t block, uint64_t marks);
-
-static void each_block(const uint32_t bricks[3], uint32_t faces, const voxel_box *box, uint32_t face, block_action act,
+static void each_block(const uint32_t bricks[3], uint32_t faces, const voxel_box *box, uint32_t face, cells_action act,
                        void *context) {
     uint32_t low[3], high[3];
     bricks_of(box, low, high);
@@ -59,7 +56,7 @@ static void each_block(const uint32_t bricks[3], uint32_t faces, const voxel_box
 }
 
 /* The same for every block of every layer of an object's box. */
-static void each_object_block(const uint32_t bricks[3], uint32_t faces, const voxel_box *box, block_action act,
+static void each_object_block(const uint32_t bricks[3], uint32_t faces, const voxel_box *box, cells_action act,
                               void *context) {
     for (uint32_t face = 0; face < faces; face++) {
         voxel_box layer = faces == 1 ? *box : cells_face_box(box, face);
@@ -67,7 +64,16 @@ static void each_object_block(const uint32_t bricks[3], uint32_t faces, const vo
     }
 }
 
-static uint64_t box_references(const voxel_box *box, uint32_t faces) {
+void cells_each_block(const aset_cells *cells, const voxel_box *box, cells_action act, void *context) {
+    each_object_block(cells->bricks, cells->faces, box, act, context);
+}
+
+uint64_t cells_in_all(const uint32_t n[3], uint32_t faces) {
+    uint64_t x = n[0], y = n[1], z = n[2];
+    return faces == 1 ? x * y * z : 2 * ((x + 1) * y * z + (y + 1) * x * z + (z + 1) * x * y);
+}
+
+uint64_t cells_references(const voxel_box *box, uint32_t faces) {
     uint64_t n[3];
     for (int a = 0; a < 3; a++) {
         n[a] = (uint64_t)(box->high[a] - box->low[a] + 1);
@@ -122,7 +128,7 @@ aset_status cells_measure(const aset_scene *scene, const aset_slices *slices, ui
     count_bricks(slices, bricks);
     for (uint32_t i = 0; i < scene->counts.objects; i++) {
         voxel_box box = slices_object_box(slices, scene, i);
-        references += box_references(&box, faces);
+        references += cells_references(&box, faces);
     }
     uint64_t all = (uint64_t)bricks[0] * bricks[1] * bricks[2] * faces;
     if (all > UINT32_MAX - 64 || references > UINT32_MAX - 2) {
@@ -155,22 +161,77 @@ aset_status cells_measure(const aset_scene *scene, const aset_slices *slices, ui
     return ASET_OK;
 }
 
+/* --- marks --- */
+
+static size_t map_words(const aset_cells *cells) {
+    return ((size_t)cells->bricks[0] * cells->bricks[1] * cells->bricks[2] * cells->faces + 63) / 64;
+}
+
+void cells_take_map(aset_cells *cells, const aset_slices *slices, uint32_t faces, aset_arena *arena) {
+    count_bricks(slices, cells->bricks);
+    cells->faces = faces;
+    size_t words = map_words(cells);
+    cells->map = aset_arena_alloc(arena, 12 * words, ASET_CATEGORY_CELLS);
+    cells->map_rank = (uint32_t *)(void *)(cells->map + words);
+    memset(cells->map, 0, 8 * words);
+}
+
+static void mark_map(void *context, uint32_t block, uint64_t marks) {
+    aset_cells *cells = context;
+    (void)marks;
+    cells->map[block >> 6] |= UINT64_C(1) << (block & 63);
+}
+
+void cells_mark_blocks(aset_cells *cells, const voxel_box *box) {
+    cells_each_block(cells, box, mark_map, cells);
+}
+
+void cells_rank_blocks(aset_cells *cells) {
+    size_t words = map_words(cells);
+    uint32_t n = 0;
+    for (size_t i = 0; i < words; i++) {
+        cells->map_rank[i] = n;
+        n += bits_count(cells->map[i]);
+    }
+    cells->n_blocks = n;
+}
+
+void cells_take_marks(aset_cells *cells, aset_arena *arena) {
+    size_t n = cells->n_blocks;
+    cells->marks = aset_arena_alloc(arena, 12 * n, ASET_CATEGORY_CELLS);
+    cells->first = (uint32_t *)(void *)(cells->marks + n);
+    memset(cells->marks, 0, 8 * n);
+}
+
+static void mark_cells(void *context, uint32_t block, uint64_t marks) {
+    aset_cells *cells = context;
+    uint32_t rank = cells_rank(cells, block);
+    if (rank != NO_CELL) {
+        cells->marks[rank] |= marks;
+    }
+}
+
+void cells_mark(aset_cells *cells, const voxel_box *box) {
+    cells_each_block(cells, box, mark_cells, cells);
+}
+
+bool cells_rank_marks(aset_cells *cells) {
+    uint64_t n = 0;
+    for (uint32_t i = 0; i < cells->n_blocks; i++) {
+        cells->first[i] = (uint32_t)n;
+        n += bits_count(cells->marks[i]);
+    }
+    cells->n_cells = (uint32_t)n;
+    return n <= UINT32_MAX - 2;
+}
+
+/* --- references --- */
+
 typedef struct build {
     aset_cells *cells;
     aset_references *references;
     uint32_t object;
 } build;
-
-static void mark_map(void *context, uint32_t block, uint64_t marks) {
-    build *b = context;
-    (void)marks;
-    b->cells->map[block >> 6] |= UINT64_C(1) << (block & 63);
-}
-
-static void mark_cells(void *context, uint32_t block, uint64_t marks) {
-    build *b = context;
-    b->cells->marks[cells_rank(b->cells, block)] |= marks;
-}
 
 static void count_references(void *context, uint32_t block, uint64_t marks) {
     build *b = context;
@@ -217,31 +278,6 @@ static void place_references(void *context, uint32_t block, uint64_t marks) {
     }
 }
 
-/* The passes over all boxes differ in what they do with a block. */
-static void each_box(build *b, const aset_scene *scene, const aset_slices *slices, block_action act) {
-    for (b->object = 0; b->object < scene->counts.objects; b->object++) {
-        voxel_box box = slices_object_box(slices, scene, b->object);
-        each_object_block(b->cells->bricks, b->cells->faces, &box, act, b);
-    }
-}
-
-static void rank_map(aset_cells *cells, size_t n_words) {
-    uint32_t n = 0;
-    for (size_t i = 0; i < n_words; i++) {
-        cells->map_rank[i] = n;
-        n += bits_count(cells->map[i]);
-    }
-    cells->n_blocks = n;
-}
-
-static void rank_marks(aset_cells *cells) {
-    cells->n_cells = 0;
-    for (uint32_t i = 0; i < cells->n_blocks; i++) {
-        cells->first[i] = cells->n_cells;
-        cells->n_cells += bits_count(cells->marks[i]);
-    }
-}
-
 /* Counts, which stand where the object numbers will be, become start bits; then every place is free. */
 static void lay_out(const aset_cells *cells, aset_references *refs) {
     uint32_t at = 0, cell = 0;
@@ -256,33 +292,52 @@ static void lay_out(const aset_cells *cells, aset_references *refs) {
     memset(refs->objects, 0xff, (size_t)ASET_BYTES_PACKED(refs->n, refs->width));
 }
 
+/* The passes over all boxes differ in what they do with one. */
+typedef void (*box_action)(build *b, const voxel_box *box);
+
+static void box_blocks(build *b, const voxel_box *box) {
+    cells_mark_blocks(b->cells, box);
+}
+
+static void box_marks(build *b, const voxel_box *box) {
+    cells_mark(b->cells, box);
+}
+
+static void box_counts(build *b, const voxel_box *box) {
+    cells_each_block(b->cells, box, count_references, b);
+}
+
+static void box_places(build *b, const voxel_box *box) {
+    cells_each_block(b->cells, box, place_references, b);
+}
+
+static void each_box(build *b, const aset_scene *scene, const aset_slices *slices, box_action act) {
+    for (b->object = 0; b->object < scene->counts.objects; b->object++) {
+        voxel_box box = slices_object_box(slices, scene, b->object);
+        act(b, &box);
+    }
+}
+
 void cells_build(aset_cells *cells, aset_references *references, const aset_scene *scene, const aset_slices *slices,
                  const aset_space_size *size, uint32_t faces, aset_arena *arena) {
-    size_t words = (size_t)ASET_BLOCK_WORDS(slices->n[0], slices->n[1], slices->n[2], faces), n = size->n_blocks;
     build b = {cells, references, 0};
-    count_bricks(slices, cells->bricks);
-    cells->faces = faces;
-    cells->map = aset_arena_alloc(arena, 12 * words, ASET_CATEGORY_CELLS);
-    cells->map_rank = (uint32_t *)(void *)(cells->map + words);
-    cells->marks = aset_arena_alloc(arena, 12 * n, ASET_CATEGORY_CELLS);
-    cells->first = (uint32_t *)(void *)(cells->marks + n);
-    memset(cells->map, 0, 8 * words);
-    memset(cells->marks, 0, 8 * n);
-    each_box(&b, scene, slices, mark_map);
-    rank_map(cells, words);
-    each_box(&b, scene, slices, mark_cells);
-    rank_marks(cells);
+    cells_take_map(cells, slices, faces, arena);
+    each_box(&b, scene, slices, box_blocks);
+    cells_rank_blocks(cells);
+    cells_take_marks(cells, arena);
+    each_box(&b, scene, slices, box_marks);
+    (void)cells_rank_marks(cells); /* no more cells than references, which measure has bounded */
 
     references->n = size->n_references;
     references->width = bits_width(scene->counts.objects);
-    references->first = aset_arena_alloc(arena, 4 * n, ASET_CATEGORY_REFERENCES);
+    references->first = aset_arena_alloc(arena, 4 * (size_t)cells->n_blocks, ASET_CATEGORY_REFERENCES);
     references->starts = aset_arena_alloc(arena, (size_t)ASET_BYTES_PACKED(references->n, 1), ASET_CATEGORY_REFERENCES);
     size_t bytes = (size_t)ASET_BYTES_PACKED(references->n, references->width);
     references->objects = aset_arena_alloc(arena, bytes, ASET_CATEGORY_REFERENCES);
     memset(references->objects, 0, bytes);
-    each_box(&b, scene, slices, count_references);
+    each_box(&b, scene, slices, box_counts);
     lay_out(cells, references);
-    each_box(&b, scene, slices, place_references);
+    each_box(&b, scene, slices, box_places);
 }
 
 void cells_each(const aset_references *references, cell_look look, void *context) {

@@ -169,4 +169,4 @@ static void excell_go(const aset_space *space, const probe *ray, walk_request *w
     leaves_go(space, ray, walk, excell_find, false);
 }
 
-const aset_method aset_excell = {"excell", true, excell_measure, excell_build, excell_go, leaves_each};
+const aset_method aset_excell = {"excell", true, 0, excell_measure, excell_build, excell_go, leaves_each};

@@ -22,12 +22,11 @@ static aset_status grid_measure(aset_space_size *size, const aset_scene *scene, 
 }
 
 static void grid_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
-    const uint32_t *n = size->divisions;
-    slices_make(&space->slices, space->scene, n);
+    slices_make(&space->slices, space->scene, size->divisions);
     cells_build(&space->cells, &space->references, space->scene, &space->slices, size, 1, arena);
     space->boxes = aset_arena_alloc(arena, space->scene->counts.objects * sizeof(aset_box), ASET_CATEGORY_REFERENCES);
     boxes_fill(space->boxes, &space->slices, space->scene);
-    space->structure.leaves = (uint64_t)n[0] * n[1] * n[2];
+    space->structure.leaves = cells_in_all(size->divisions, 1);
     space->structure.nonempty = space->cells.n_cells;
     space->structure.references = space->references.n;
 }
@@ -113,4 +112,4 @@ static void grid_each_cell(const aset_space *space, cell_look look, void *contex
     cells_each(&space->references, look, context);
 }
 
-const aset_method aset_grid = {"grid", false, grid_measure, grid_build, grid_go, grid_each_cell};
+const aset_method aset_grid = {"grid", false, 1, grid_measure, grid_build, grid_go, grid_each_cell};

@@ -18,4 +18,4 @@ static void mset_build(aset_space *space, const aset_space_size *size, aset_aren
 
 SIDES_GO(mset_go, true)
 
-const aset_method aset_mset = {"mset", false, mset_measure, mset_build, mset_go, sides_each};
+const aset_method aset_mset = {"mset", false, 6, mset_measure, mset_build, mset_go, sides_each};

@@ -15,4 +15,4 @@ static void octree_go(const aset_space *space, const probe *ray, walk_request *w
     leaves_go(space, ray, walk, tree_find, false);
 }
 
-const aset_method aset_octree = {"octree", true, tree_measure, tree_build, octree_go, leaves_each};
+const aset_method aset_octree = {"octree", true, 0, tree_measure, tree_build, octree_go, leaves_each};

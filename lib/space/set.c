@@ -153,4 +153,4 @@ static void set_build(aset_space *space, const aset_space_size *size, aset_arena
 
 SIDES_GO(set_go, false)
 
-const aset_method aset_set = {"set", false, set_measure, set_build, set_go, sides_each};
+const aset_method aset_set = {"set", false, 0, set_measure, set_build, set_go, sides_each};

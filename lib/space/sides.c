@@ -95,12 +95,10 @@ static void find_large(aset_space *space) {
 }
 
 void sides_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
-    const uint32_t *n = size->divisions;
     cells_build(&space->cells, &space->references, space->scene, &space->slices, size, FACES, arena);
     space->large = aset_arena_alloc(arena, size->voxels, ASET_CATEGORY_VOXELS);
     find_large(space);
-    space->structure.leaves = 2 * ((uint64_t)(n[0] + 1) * n[1] * n[2] + (uint64_t)(n[1] + 1) * n[0] * n[2] +
-                                   (uint64_t)(n[2] + 1) * n[0] * n[1]);
+    space->structure.leaves = cells_in_all(size->divisions, FACES);
     space->structure.nonempty = space->cells.n_cells;
     space->structure.references = space->references.n;
 }

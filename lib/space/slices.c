@@ -1,4 +1,4 @@
-/* slices.c - where the slices are, which voxels a box touches, where a ray begins among them. */
+/* slices.c - where the slices are, how many there are to be, which voxels a box touches, where a ray begins among them. */
 #include "space/slices.h"
 
 /*
@@ -11,10 +11,14 @@
 #define OUTSIDE 8
 #define BEFORE 4
 
+#define AUTO_DENSITY 64
+#define AUTO_DIVISIONS_MAX 512
+#define AUTO_THIN R(0.001)
+
 void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]) {
     aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
     aset_real margin = REAL_UNIT;
-    if (scene->counts.objects > 0) {
+    if (scene->margin > 0) {
         low = scene->low;
         high = scene->high;
         margin = scene->margin;
@@ -32,7 +36,59 @@ void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t di
     }
 }
 
-/* The same in a table of slices, by halving it. */
+/* The cube root of x >= 1, by Newton's steps from above: twice the precision each once they are near. */
+static aset_real cube_root(aset_real x) {
+    aset_real root = x;
+    for (int i = 0; i < 60; i++) {
+        root = (2 * root + x / (root * root)) / 3;
+    }
+    return root;
+}
+
+/* The least steps between neighbouring coordinates that a scene must be long; or it is one point, which needs none. */
+#define STEPS_LEAST 64
+
+bool slices_precise(const aset_scene *scene) {
+    aset_real size = vec_largest(vec_sub(scene->high, scene->low));
+    aset_real largest = real_max(vec_largest(scene->low), vec_largest(scene->high));
+    return !(scene->margin > 0) || size == 0 || size >= STEPS_LEAST * 2 * REAL_UNIT * largest;
+}
+
+void slices_auto_divisions(const aset_scene *scene, uint32_t n_objects, size_t budget, uint32_t divisions[3]) {
+    aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
+    aset_scene_bounds(scene, &low, &high);
+    aset_vec3 span = vec_sub(high, low);
+    aset_real largest = vec_largest(span), sides[3] = {1, 1, 1}, volume = 1;
+    for (int a = 0; a < 3 && largest > 0; a++) { /* relative to the largest, so that no product leaves the range */
+        sides[a] = real_max(vec_at(&span, a) / largest, AUTO_THIN);
+        volume *= sides[a];
+    }
+    aset_real per_side = cube_root(AUTO_DENSITY * real_max((aset_real)n_objects, 1) / volume);
+    for (int a = 0; a < 3; a++) {
+        aset_real n = sides[a] > AUTO_THIN ? sides[a] * per_side + R(0.5) : 1;
+        divisions[a] = n < 1 ? 1 : n > AUTO_DIVISIONS_MAX ? AUTO_DIVISIONS_MAX : (uint32_t)n;
+    }
+    while (budget > 0 && 12 * ASET_BLOCK_WORDS(divisions[0], divisions[1], divisions[2], 6u) > budget / 2 &&
+           (divisions[0] > 1 || divisions[1] > 1 || divisions[2] > 1)) {
+        for (int a = 0; a < 3; a++) { /* MSET's map of blocks alone would take half of it */
+            divisions[a] -= divisions[a] > 1 ? (divisions[a] + 7) / 8 : 0;
+        }
+    }
+}
+
+bool slices_coarsen(uint32_t divisions[3], bool far_off) {
+    uint32_t *n = divisions;
+    if (n[0] == 1 && n[1] == 1 && n[2] == 1) {
+        return false;
+    }
+    for (int a = 0; a < 3; a++) {
+        uint32_t less = far_off ? (n[a] + 1) / 2 : (n[a] + 7) / 8;
+        n[a] = n[a] > less ? n[a] - less : 1;
+    }
+    return true;
+}
+
+/* slices_locate in a table of slices, by halving it. */
 static int32_t locate_in_table(const aset_real *planes, int32_t last, aset_real x) {
     int32_t low = 0, high = last;
     while (low < high) {
@@ -53,9 +109,7 @@ int32_t slices_locate(const aset_slices *slices, int a, aset_real x) {
     return slices_locate_even(slices, a, x);
 }
 
-voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object) {
-    aset_vec3 low, high;
-    object_bounds(scene, object, &low, &high);
+voxel_box slices_box(const aset_slices *slices, const aset_scene *scene, aset_vec3 low, aset_vec3 high) {
     voxel_box box;
     for (int a = 0; a < 3; a++) {
         aset_real end = slices_grown_high(scene, vec_at(&high, a));
@@ -66,6 +120,12 @@ voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, 
         }
     }
     return box;
+}
+
+voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object) {
+    aset_vec3 low, high;
+    object_bounds(scene, object, &low, &high);
+    return slices_box(slices, scene, low, high);
 }
 
 /* Prepares steps and ends; nothing that depends on where the walk begins. */

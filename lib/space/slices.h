@@ -26,8 +26,18 @@ typedef struct voxel_box {
  */
 void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]);
 
-/* The voxels that an object's grown box touches: its expanded box in the paper's words. */
+/* The voxels that the grown box of an object from low to high touches: its expanded box in the paper's words. */
+voxel_box slices_box(const aset_slices *slices, const aset_scene *scene, aset_vec3 low, aset_vec3 high);
 voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object);
+
+/* Is the scene long enough, in the steps of its coordinates, to be cut? */
+bool slices_precise(const aset_scene *scene);
+
+/* The rule of aset_auto_divisions, for a scene's box and so many objects. */
+void slices_auto_divisions(const aset_scene *scene, uint32_t n_objects, size_t budget, uint32_t divisions[3]);
+
+/* One step coarser, a large one if the need is far off. False: nothing is coarser. */
+bool slices_coarsen(uint32_t divisions[3], bool far_off);
 
 /* The ends of an object's box as the spaces see it: grown by twice the scene's margin. */
 static inline aset_real slices_grown_low(const aset_scene *scene, aset_real low) {

@@ -1,4 +1,4 @@
-/* space.c - measuring and building any space; the rule for automatic divisions. */
+/* space.c - measuring and building any space; automatic divisions that fit. */
 #include "base/bits.h"
 #include "space/answers.h"
 #include "space/slices.h"
@@ -6,9 +6,6 @@
 
 #include <string.h>
 
-#define AUTO_DENSITY 64
-#define AUTO_DIVISIONS_MAX 512
-#define AUTO_THIN R(0.001)
 #define AUTO_DEPTH 6
 #define STACK_SCRATCH_WORDS 128 /* a kilobyte */
 
@@ -16,51 +13,15 @@ const char *aset_method_name(const aset_method *method) {
     return method->name;
 }
 
-/* The cube root of x >= 1, by Newton's steps from above: twice the precision each once they are near. */
-static aset_real cube_root(aset_real x) {
-    aset_real root = x;
-    for (int i = 0; i < 60; i++) {
-        root = (2 * root + x / (root * root)) / 3;
-    }
-    return root;
-}
-
 void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisions[3]) {
-    aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
-    aset_scene_bounds(scene, &low, &high);
-    aset_vec3 span = vec_sub(high, low);
-    aset_real largest = vec_largest(span), sides[3] = {1, 1, 1}, volume = 1;
-    for (int a = 0; a < 3 && largest > 0; a++) { /* relative to the largest, so that no product leaves the range */
-        sides[a] = real_max(vec_at(&span, a) / largest, AUTO_THIN);
-        volume *= sides[a];
-    }
-    aset_real per_side = cube_root(AUTO_DENSITY * real_max((aset_real)scene->counts.objects, 1) / volume);
-    for (int a = 0; a < 3; a++) {
-        aset_real n = sides[a] > AUTO_THIN ? sides[a] * per_side + R(0.5) : 1;
-        divisions[a] = n < 1 ? 1 : n > AUTO_DIVISIONS_MAX ? AUTO_DIVISIONS_MAX : (uint32_t)n;
-    }
-    while (budget > 0 && 12 * ASET_BLOCK_WORDS(divisions[0], divisions[1], divisions[2], 6u) > budget / 2 &&
-           (divisions[0] > 1 || divisions[1] > 1 || divisions[2] > 1)) {
-        for (int a = 0; a < 3; a++) { /* MSET's map of blocks alone would take half of it */
-            divisions[a] -= divisions[a] > 1 ? (divisions[a] + 7) / 8 : 0;
-        }
-    }
-}
-
-/* The least steps between neighbouring coordinates that a scene must be long; or it is one point, which needs none. */
-#define STEPS_LEAST 64
-
-static bool is_precise(const aset_scene *scene) {
-    aset_real size = vec_largest(vec_sub(scene->high, scene->low));
-    aset_real largest = real_max(vec_largest(scene->low), vec_largest(scene->high));
-    return scene->counts.objects == 0 || size == 0 || size >= STEPS_LEAST * 2 * REAL_UNIT * largest;
+    slices_auto_divisions(scene, scene->counts.objects, budget, divisions);
 }
 
 /* The options, checked; automatic ones are filled in. */
 static aset_status choose_size(aset_space_size *size, const aset_scene *scene, const aset_method *method,
                                const aset_space_options *options, const aset_arena *arena, bool *is_auto) {
     const uint32_t *n = size->divisions;
-    if (!is_precise(scene)) {
+    if (!slices_precise(scene)) {
         return ASET_ERR_PRECISION;
     }
     memset(size, 0, sizeof *size);
@@ -127,14 +88,7 @@ static bool shrink(aset_space_size *size, const aset_method *method, bool far_of
     if (size->caps[0] > 0) {
         memcpy(n, size->caps, sizeof size->caps); /* SET: what was asked for, not what was made of it */
     }
-    if (n[0] == 1 && n[1] == 1 && n[2] == 1) {
-        return false;
-    }
-    for (int a = 0; a < 3; a++) {
-        uint32_t less = far_off ? (n[a] + 1) / 2 : (n[a] + 7) / 8;
-        n[a] = n[a] > less ? n[a] - less : 1;
-    }
-    return true;
+    return slices_coarsen(n, far_off);
 }
 
 /* Measures; automatic sizes are made smaller until everything fits. */

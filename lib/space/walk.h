@@ -41,6 +41,7 @@ typedef void (*cell_look)(void *context, uint32_t cell, const uint32_t *objects,
 struct aset_method {
     const char *name;
     bool by_depth; /* sized by depth and leaf (trees), not by divisions */
+    uint32_t faces; /* cells a voxel, if marks on equal slices are all that a walk without references looks at; else 0 */
     /*
      * size->divisions or depth and leaf are given; fills the rest. scratch as in aset_space_measure, never NULL.
      * ASET_ERR_NOMEM: the scratch is too small; size->scratch bytes would do.

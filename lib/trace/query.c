@@ -79,10 +79,10 @@ bool query_can(const aset_tracer *tracer, bool approximate) {
     }
 #endif
 #if ASET_WITH_APPROXIMATION
-    if (approximate && tracer->summary == NULL) {
+    if (tracer->space == NULL) {
         return false;
     }
-    return tracer->space != NULL;
+    return approximate ? tracer->summary != NULL : !tracer->space->is_flat;
 #else
     return tracer->space != NULL && !approximate;
 #endif

@@ -84,6 +84,54 @@ static void check_colours(const aset_tracer *tracer, const aset_ray *rays, bool 
     close_arena(&arena);
 }
 
+#if ASET_WITH_APPROXIMATION
+/* The same from the scene as a stream, in as much memory as it asks for and not a byte more: the same answers. */
+static void stream(const aset_tracer *whole, const aset_ray *rays) {
+    aset_counter counter;
+    aset_flat *flat = malloc(sizeof *flat);
+    aset_scene stage;
+    aset_space space;
+    aset_summary summary;
+    aset_space_options options;
+    aset_status status = ASET_ERR_NOMEM;
+    aset_arena arena = open_arena(0);
+    aset_sink sink = aset_counter_sink(&counter);
+    require(flat != NULL && aset_scene_emit(&sink, whole->scene) == ASET_OK);
+    memset(&options, 0, sizeof options);
+    memcpy(options.divisions, whole->space->slices.n, sizeof options.divisions);
+    options.textures = whole->summary->capacity;
+    for (size_t bytes = 0; status == ASET_ERR_NOMEM; bytes += arena.missing) {
+        bool again = true;
+        close_arena(&arena);
+        arena = open_arena(bytes);
+        status = aset_flat_init(flat, &arena, &counter, whole->space->method, &options);
+        while (status == ASET_OK && again) {
+            sink = aset_flat_sink(flat);
+            require(aset_scene_emit(&sink, whole->scene) == ASET_OK);
+            status = aset_flat_pass(flat, &again);
+        }
+        require(status == ASET_OK || (status == ASET_ERR_NOMEM && arena.missing > 0 && arena.used == 0));
+    }
+    require(arena.size == flat->least && arena.peak == flat->least);
+    require(aset_flat_finish(&stage, &space, &summary, flat) == ASET_OK);
+    aset_tracer streamed = *whole;
+    streamed.scene = &stage;
+    streamed.space = &space;
+    streamed.summary = &summary;
+    require(summary.merged == whole->summary->merged && summary.n_textures == whole->summary->n_textures);
+    for (uint32_t i = 0; i < RAYS; i++) {
+        aset_hit a, b;
+        bool found_a = false, found_b = false;
+        status = aset_closest_hit(&found_a, &a, whole, rays + i, true, NULL);
+        require(aset_closest_hit(&found_b, &b, &streamed, rays + i, true, NULL) == status && found_a == found_b);
+        require(!found_a || (a.t == b.t && a.cell == b.cell));
+        require(!found_a || memcmp(&a.material->fill, &b.material->fill, sizeof a.material->fill) == 0);
+    }
+    close_arena(&arena);
+    free(flat);
+}
+#endif
+
 static void approximate(aset_tracer *tracer, const aset_space *space, const aset_ray *rays, bool tame, aset_arena *arena) {
 #if ASET_WITH_APPROXIMATION
     aset_summary summary;
@@ -107,6 +155,9 @@ static void approximate(aset_tracer *tracer, const aset_space *space, const aset
         }
     }
     check_colours(tracer, rays, tame);
+    if (space->method == &aset_mset || space->method == &aset_grid) {
+        stream(tracer, rays);
+    }
     tracer->summary = NULL;
     tracer->approx_kinds = 0;
     aset_arena_release(arena, &mark);
