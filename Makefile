@@ -127,7 +127,7 @@ $(BUILD)/tests/bench_peers $(BUILD)/tests/bench_drafts: $(BUILD)/tests/%: tests/
 	$(Q)if [ "$(EMBREE)" = yes ]; then with="-DBENCH_EMBREE=1" lib="-lembree3"; fi; \
 	  $(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $$with -o $@ $< $(PROCEDURAL_A) $(CORE_A) $$lib -lm
 
-test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset all check-layers check-link check-recursion check-readme ## run the tests, in under two minutes
+test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset all check-layers check-link check-recursion check-readme check-man check-completion ## run the tests, in under two minutes
 	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
 	  echo "== faults.sh"; bash tests/faults.sh $(BUILD)/aset || failed="$$failed faults.sh"; \
@@ -185,6 +185,12 @@ check-link: $(CORE_A) ## the core's undefined symbols, and that other layout swi
 
 check-recursion: ## no function of the core calls itself, directly or through others
 	@bash tests/recursion.sh $(BUILD)
+
+check-man: man ## the man pages against the help texts, the sources and the public headers
+	@bash tests/man.sh $(BUILD)/aset $(BUILD)/man "$(CC)"
+
+check-completion: $(BUILD)/aset.bash ## the completion for bash, called as bash would
+	@bash tests/completion.sh $(BUILD)/aset $<
 
 check-readme: $(ARCHIVES) ## the README's program is examples/smallest.c
 	@bash tests/readme.sh
@@ -270,6 +276,24 @@ install: $(ARCHIVES) $(SHARED) $(BUILD)/aset $(BUILD)/libaset.pc ## install unde
 	ln -sf libaset.so.$(SOVERSION) $(DESTDIR)$(LIBDIR)/libaset.so
 	install -m 644 $(BUILD)/libaset.pc $(DESTDIR)$(LIBDIR)/pkgconfig
 
+# What a system has of a program beside the program: pages for man, words for the shell.
+man: $(BUILD)/man/libaset.3 ## the man pages aset(1) and libaset(3), from the help texts and the headers
+$(BUILD)/man/libaset.3: $(BUILD)/aset $(wildcard include/aset/*.h tools/*.awk) tools/man.sh
+	$(call say,MAN)
+	$(Q)bash tools/man.sh $(BUILD)/aset $(BUILD)/man
+
+$(BUILD)/aset.bash: $(BUILD)/aset $(wildcard tools/*.awk) tools/completion.sh
+	$(call say,BASH)
+	$(Q)bash tools/completion.sh $(BUILD)/aset > $@
+
+install: install-share
+SHARE = $(DESTDIR)$(PREFIX)/share
+install-share: man $(BUILD)/aset.bash
+	install -d $(SHARE)/man/man1 $(SHARE)/man/man3 $(SHARE)/bash-completion/completions
+	install -m 644 $(BUILD)/man/aset.1 $(SHARE)/man/man1
+	install -m 644 $(BUILD)/man/libaset.3 $(SHARE)/man/man3
+	install -m 644 $(BUILD)/aset.bash $(SHARE)/bash-completion/completions/aset
+
 clean: ## remove the build directory
 	rm -rf $(BUILD)
 
@@ -278,6 +302,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

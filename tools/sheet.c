@@ -32,10 +32,10 @@ static const char help[] =
     "a new line; it may be empty. The letters grow with the cells.\n"
     "\n"
     "Options:\n"
-    "  -o, --output F  where the sheet goes (.png or .ppm; - for PNG on standard output)\n"
-    "      --columns N pictures in a row; default: as many as there are rows, or one more\n"
-    "      --title T   a line above the pictures\n"
-    "  -h, --help      print this text\n";
+    "  -o, --output F   where the sheet goes (.png or .ppm; - for PNG on standard output)\n"
+    "      --columns N  pictures in a row; default: as many as there are rows, or one more\n"
+    "      --title T    a line above the pictures\n"
+    "  -h, --help       print this text\n";
 
 typedef struct cell {
     const char *path;

@@ -23,7 +23,7 @@ static const char help[] =
     "  -o, --output DIR         where the results go; made if missing; default trade\n"
     "  -m, --methods LIST       of mset,set,grid,octree,arts,excell,brute, or all; default all but brute\n"
     "      --grids LIST         divisions of mset, set, grid: N, NXxNYxNZ or auto; default 16,32,64\n"
-    "      --octree-depths LIST halvings in octree, arts, excell; default 4,6\n"
+    "      --octree-depths LIST  halvings in octree, arts, excell; default 4,6\n"
     "      --cells LIST         what cells remember: flat (average textures), normal, plane (drafts); default flat,plane\n"
     "  -s, --sizes LIST         pictures, each WxH; default 256x256\n"
     "      --rounds N           measurements of each setting; default 3\n"
