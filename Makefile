@@ -192,6 +192,9 @@ check-man: man ## the man pages against the help texts, the sources and the publ
 check-completion: $(BUILD)/aset.bash ## the completion for bash, called as bash would
 	@bash tests/completion.sh $(BUILD)/aset $<
 
+check-desktop: $(BUILD)/aset $(BUILD)/tests/convert ## the thumbnailer in a sandbox (bwrap), odd names, MIME types
+	@bash tests/thumbnailer.sh $(BUILD)/aset $(BUILD)/tests/convert
+
 check-readme: $(ARCHIVES) ## the README's program is examples/smallest.c
 	@bash tests/readme.sh
 
@@ -284,15 +287,18 @@ $(BUILD)/man/libaset.3: $(BUILD)/aset $(wildcard include/aset/*.h tools/*.awk) t
 
 $(BUILD)/aset.bash: $(BUILD)/aset $(wildcard tools/*.awk) tools/completion.sh
 	$(call say,BASH)
-	$(Q)bash tools/completion.sh $(BUILD)/aset > $@
+	$(Q)bash tools/completion.sh $(BUILD)/aset > $@.new && mv $@.new $@
 
 install: install-share
 SHARE = $(DESTDIR)$(PREFIX)/share
 install-share: man $(BUILD)/aset.bash
-	install -d $(SHARE)/man/man1 $(SHARE)/man/man3 $(SHARE)/bash-completion/completions
+	install -d $(SHARE)/man/man1 $(SHARE)/man/man3 $(SHARE)/bash-completion/completions $(SHARE)/thumbnailers $(SHARE)/mime/packages
 	install -m 644 $(BUILD)/man/aset.1 $(SHARE)/man/man1
 	install -m 644 $(BUILD)/man/libaset.3 $(SHARE)/man/man3
 	install -m 644 $(BUILD)/aset.bash $(SHARE)/bash-completion/completions/aset
+	install -m 644 tools/desktop/aset.thumbnailer $(SHARE)/thumbnailers
+	install -m 644 tools/desktop/libaset.xml $(SHARE)/mime/packages
+	@[ -n "$(DESTDIR)" ] || ! command -v update-mime-database > /dev/null || update-mime-database $(SHARE)/mime
 
 clean: ## remove the build directory
 	rm -rf $(BUILD)
@@ -302,6 +308,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

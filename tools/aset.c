@@ -28,10 +28,7 @@ static const tool_command commands[] = {
 };
 #define N_COMMANDS (sizeof commands / sizeof commands[0])
 
-static const char *const scene_extensions[] = {".nff", ".obj", ".stl", ".ply"};
-#define N_EXTENSIONS (sizeof scene_extensions / sizeof scene_extensions[0])
-
-/* What the short form puts before the user's own options for a model (all extensions but .nff): a draft. */
+/* What the short form puts before the user's own options for a model (all kinds but NFF): a draft. */
 static const char *const draft_words[] = {"--approx", "all", "--approx-depth", "0", "--cells", "plane", "--memory", "1M"};
 #define N_DRAFT_WORDS (sizeof draft_words / sizeof draft_words[0])
 
@@ -59,21 +56,12 @@ static bool is_scene(const char *word) {
     if (stat(word, &status) == 0 && !S_ISDIR(status.st_mode)) {
         return true;
     }
-    for (size_t i = 0; i < N_EXTENSIONS; i++) {
-        if (tool_has_extension(word, scene_extensions[i])) {
-            return true;
-        }
-    }
-    return false;
+    return tool_kind_of(word) != TOOL_KIND_NONE;
 }
 
 static bool is_model(const char *word) {
-    for (size_t i = 1; i < N_EXTENSIONS; i++) {
-        if (tool_has_extension(word, scene_extensions[i])) {
-            return true;
-        }
-    }
-    return false;
+    tool_kind kind = tool_kind_of(word);
+    return kind != TOOL_KIND_NONE && kind != TOOL_KIND_NFF;
 }
 
 /* SCENE OUT [options], in argv[0] and on, as render DRAFT... SCENE -o OUT [options]. */
@@ -89,8 +77,9 @@ static int run_short(int argc, char **argv) {
         return TOOL_FAILED;
     }
     int n = 0;
+    size_t n_draft = is_model(argv[0]) ? N_DRAFT_WORDS : 0;
     words[n++] = (char *)"render";
-    for (size_t i = 0; is_model(argv[0]) && i < N_DRAFT_WORDS; i++) {
+    for (size_t i = 0; i < n_draft; i++) {
         words[n++] = (char *)draft_words[i];
     }
     words[n++] = argv[0];

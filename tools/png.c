@@ -134,14 +134,14 @@ bool tool_picture_path_ok(const char *path) {
     return false;
 }
 
-static bool shape_ok(const char *path, uint32_t width, uint32_t height, uint32_t channels) {
+static bool shape_ok(const char *path, bool ppm, uint32_t width, uint32_t height, uint32_t channels) {
     if (width < 1 || height < 1 || width > TOOL_SIDE_MAX || height > TOOL_SIDE_MAX) {
         tool_error(tool_output_name(path), 0, "a picture of %lux%lu pixels cannot be written; each side is from 1 to %u",
                    (unsigned long)width, (unsigned long)height, TOOL_SIDE_MAX);
         return false;
     }
     if ((channels != 1 && channels != CHANNELS_RGB && channels != CHANNELS_RGBA) ||
-        (channels == CHANNELS_RGBA && is_ppm(path))) {
+        (channels == CHANNELS_RGBA && ppm)) {
         tool_error(tool_output_name(path), 0, "%lu channels cannot be written; a .png takes 1, 3 or 4, a .ppm 1 or 3",
                    (unsigned long)channels);
         return false;
@@ -157,8 +157,8 @@ static void free_picture(tool_picture *picture) {
     free(picture);
 }
 
-tool_picture *tool_picture_open(const char *path, uint32_t width, uint32_t height, uint32_t channels) {
-    if (!tool_picture_path_ok(path) || !shape_ok(path, width, height, channels)) {
+static tool_picture *open_picture(const char *path, bool ppm, uint32_t width, uint32_t height, uint32_t channels) {
+    if (!shape_ok(path, ppm, width, height, channels)) {
         return NULL;
     }
     tool_picture *picture = calloc(1, sizeof *picture);
@@ -173,11 +173,19 @@ tool_picture *tool_picture_open(const char *path, uint32_t width, uint32_t heigh
         free(picture);
         return NULL;
     }
-    if (!(is_ppm(path) ? begin_ppm(picture) : begin_png(picture))) {
+    if (!(ppm ? begin_ppm(picture) : begin_png(picture))) {
         tool_picture_abort(picture);
         return NULL;
     }
     return picture;
+}
+
+tool_picture *tool_picture_open(const char *path, uint32_t width, uint32_t height, uint32_t channels) {
+    return tool_picture_path_ok(path) ? open_picture(path, is_ppm(path), width, height, channels) : NULL;
+}
+
+tool_picture *tool_picture_open_png(const char *path, uint32_t width, uint32_t height, uint32_t channels) {
+    return open_picture(path, false, width, height, channels);
 }
 
 bool tool_picture_row(tool_picture *picture, const uint8_t *row) {

@@ -58,6 +58,7 @@ typedef struct prepared {
     double load_s, build_s;
 } prepared;
 
+/* In the order of tool_kind. */
 typedef enum tool_format { TOOL_NFF, TOOL_OBJ, TOOL_STL, TOOL_PLY } tool_format;
 
 /*
@@ -80,7 +81,7 @@ typedef struct tool_source {
     uint64_t n_vertices, n_skipped;
 } tool_source;
 
-/* By the name's ending. False after an error line. */
+/* By the name's ending or the first bytes. False after an error line. */
 bool tool_source_open(tool_source *source, const char *path);
 /* What the settings say of models. */
 void tool_source_set(tool_source *source, const settings *s);

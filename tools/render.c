@@ -21,6 +21,7 @@ static const char help[] =
     "and thrown away. A model, which has none, gets a view that shows all of it, two lights, a ground and a background.\n"
     "\n"
     "  -o, --output FILE       .png or .ppm; - for PNG on standard output\n"
+    "      --png               OUT is a PNG, whatever its name ends in\n"
     "  -m, --method NAME       mset, set, grid, octree, arts, excell or brute; default mset;\n"
     "                          aset stands for mset --approx all --approx-depth 1\n"
     "      --approx KINDS      rays that may be approximate: primary,shadow,reflected,refracted, all or none; default none\n"
@@ -73,7 +74,8 @@ enum {
     OPTION_SMOOTH,
     OPTION_TRANSPARENT,
     OPTION_STATS,
-    OPTION_REPORT
+    OPTION_REPORT,
+    OPTION_PNG
 };
 
 static const struct option longs[] = {
@@ -104,6 +106,7 @@ static const struct option longs[] = {
     {"transparent", no_argument, NULL, OPTION_TRANSPARENT},
     {"stats", required_argument, NULL, OPTION_STATS},
     {"report", no_argument, NULL, OPTION_REPORT},
+    {"png", no_argument, NULL, OPTION_PNG},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -113,7 +116,7 @@ static const struct option longs[] = {
 typedef struct request {
     settings settings;
     const char *scene, *output, *stats;
-    bool report, quiet, has_rows, has_approx, has_approx_depth, wants_help, is_aset;
+    bool report, quiet, is_png, has_rows, has_approx, has_approx_depth, wants_help, is_aset;
     uint32_t first_row, end_row;
 } request;
 
@@ -223,6 +226,7 @@ static bool parse_more(request *r, int option) {
     case OPTION_ANGLE: s->has_angle = true; return tool_parse_real("--angle", optarg, 0.001, 179.999, &s->angle_deg);
     case OPTION_STATS: r->stats = optarg; return true;
     case OPTION_REPORT: r->report = true; return true;
+    case OPTION_PNG: r->is_png = true; return true;
     default: return parse_model(s, option);
     }
 }
@@ -230,7 +234,7 @@ static bool parse_more(request *r, int option) {
 static bool parse_option(request *r, int option) {
     settings *s = &r->settings;
     switch (option) {
-    case 'o': r->output = optarg; return tool_picture_path_ok(optarg);
+    case 'o': r->output = optarg; return true;
     case 'm': return parse_method(r, optarg);
     case OPTION_APPROX: return parse_approx(r, optarg);
     case OPTION_APPROX_DEPTH:
@@ -255,6 +259,9 @@ static bool parse_option(request *r, int option) {
 static bool check_request(const request *r) {
     const settings *s = &r->settings;
     bool more = r->report || (r->stats != NULL && strcmp(r->stats, "-") == 0);
+    if (r->output != NULL && !r->is_png && !tool_picture_path_ok(r->output)) {
+        return false;
+    }
     if (r->output != NULL && strcmp(r->output, "-") == 0 && more) {
         tool_error(NULL, 0, "--stats: the picture already goes to standard output, expected a file for one of them");
         return false;
@@ -267,7 +274,7 @@ static bool check_request(const request *r) {
         tool_error(NULL, 0, "--cells: drafts of %s are flat, expected --method mset or grid", aset_method_name(s->method));
         return false;
     }
-    if (s->transparent && r->output != NULL && tool_has_extension(r->output, ".ppm")) {
+    if (s->transparent && r->output != NULL && !r->is_png && tool_has_extension(r->output, ".ppm")) {
         tool_error(NULL, 0, "--transparent: %s cannot be transparent, expected a .png", r->output);
         return false;
     }
@@ -432,7 +439,7 @@ static bool draw_picture(const request *r, const prepared *p, aset_statistics *s
         return false;
     }
     if (r->output != NULL) {
-        c.file = tool_picture_open(r->output, c.columns, c.end - c.first, c.channels);
+        c.file = (r->is_png ? tool_picture_open_png : tool_picture_open)(r->output, c.columns, c.end - c.first, c.channels);
         if (c.file == NULL) {
             return false;
         }

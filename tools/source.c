@@ -320,18 +320,16 @@ void tool_source_set(tool_source *source, const settings *s) {
 }
 
 bool tool_source_open(tool_source *source, const char *path) {
-    static const char *const extensions[] = {".nff", ".obj", ".stl", ".ply"};
-    bool is_input = strcmp(path, "-") == 0, is_known = is_input;
+    bool is_input = strcmp(path, "-") == 0;
+    tool_kind kind = is_input ? TOOL_KIND_NFF : tool_kind_of(path);
     memset(source, 0, sizeof *source);
     source->path = path;
-    for (unsigned i = 0; i < sizeof extensions / sizeof extensions[0] && !is_known; i++) {
-        source->format = (tool_format)i;
-        is_known = tool_has_extension(path, extensions[i]);
-    }
-    if (!is_known) {
-        tool_error(path, 0, "not a scene by its name, expected one that ends in .nff, .obj, .stl or .ply");
+    if (kind == TOOL_KIND_NONE) {
+        tool_error(path, 0, "neither a scene by its name nor a model by its first bytes, expected one that ends in .nff, .obj, .stl "
+                            "or .ply");
         return false;
     }
+    source->format = (tool_format)(kind - TOOL_KIND_NFF);
     source->stage.up = source->format == TOOL_OBJ ? ASET_UP_Y : ASET_UP_Z;
     source->stream = is_input ? stdin : fopen(path, "rb");
     if (source->stream == NULL) {

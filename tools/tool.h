@@ -149,6 +149,8 @@ bool tool_picture_path_ok(const char *path);
  * line. The same pixels give the same bytes.
  */
 tool_picture *tool_picture_open(const char *path, uint32_t width, uint32_t height, uint32_t channels);
+/* The same for a PNG, whatever path ends in. */
+tool_picture *tool_picture_open_png(const char *path, uint32_t width, uint32_t height, uint32_t channels);
 /* The next row from the top, width * channels bytes. False after an error line. */
 bool tool_picture_row(tool_picture *picture, const uint8_t *row);
 /*
@@ -171,6 +173,16 @@ typedef struct tool_image {
  */
 bool tool_image_read(tool_image *image, const char *path);
 void tool_image_free(tool_image *image);
+
+/* --- kind.c: what a file is --- */
+
+typedef enum tool_kind { TOOL_KIND_NONE, TOOL_KIND_NFF, TOOL_KIND_OBJ, TOOL_KIND_STL, TOOL_KIND_PLY } tool_kind;
+
+/*
+ * By the name's ending, in either case; a plain file whose name has none of these four is opened, and its first bytes tell
+ * whether it is a model. NONE: neither does. No error line.
+ */
+tool_kind tool_kind_of(const char *path);
 
 /* --- progress.c --- */
 
