@@ -90,8 +90,8 @@ $(BUILD)/examples/flash_model.h: $(BUILD)/aset
 
 examples: $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## build the examples
 
-mpi: $(BUILD)/examples/mpi_render ## the example for a cluster (needs Open MPI: make deps-cluster)
-$(BUILD)/examples/mpi_render: examples/cluster/mpi_render.c $(ARCHIVES)
+mpi: $(BUILD)/cluster/mpi_render ## the example for a cluster (needs Open MPI: make deps-cluster)
+$(BUILD)/cluster/mpi_render: examples/cluster/mpi_render.c $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,MPICC)
 	$(Q)mpicc $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) -ffp-contract=off -Iinclude -o $@ $< $(ARCHIVES) -lm
@@ -201,8 +201,11 @@ check-completion: $(BUILD)/aset.bash ## the completion for bash, called as bash 
 check-desktop: $(BUILD)/aset $(BUILD)/tests/convert ## the thumbnailer in a sandbox (bwrap), odd names, MIME types
 	@bash tests/thumbnailer.sh $(BUILD)/aset $(BUILD)/tests/convert
 
-check-cluster: $(BUILD)/aset $(BUILD)/tests/convert $(if $(shell command -v mpicc),$(BUILD)/examples/mpi_render) ## many jobs and ranks draw one picture: the same bytes, troubles, times (a minute)
-	@bash tests/cluster.sh $(BUILD)/aset $(BUILD)/tests/convert $(if $(shell command -v mpicc),$(BUILD)/examples/mpi_render,-)
+check-examples: $(BUILD)/aset examples ## every example's pictures against golden ones
+	@bash tests/examples.sh $(BUILD)/aset $(BUILD)/examples
+
+check-cluster: $(BUILD)/aset $(BUILD)/tests/convert $(if $(shell command -v mpicc),$(BUILD)/cluster/mpi_render) ## many jobs and ranks draw one picture: the same bytes, troubles, times (a minute)
+	@bash tests/cluster.sh $(BUILD)/aset $(BUILD)/tests/convert $(if $(shell command -v mpicc),$(BUILD)/cluster/mpi_render,-)
 
 check-readme: $(ARCHIVES) ## the README's program is examples/smallest.c
 	@bash tests/readme.sh
@@ -320,6 +323,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

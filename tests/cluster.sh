@@ -5,7 +5,7 @@
 # the bytes of aset render; a job or rank that is slow, stops, fails or is killed; then times. As tool.sh: one line a case.
 set -u
 if [ $# -lt 2 ] || [ ! -x "$1" ] || [ ! -x "$2" ]; then
-    echo "usage: bash tests/cluster.sh build/aset build/tests/convert [build/examples/mpi_render|-] [PATTERN]" >&2
+    echo "usage: bash tests/cluster.sh build/aset build/tests/convert [build/cluster/mpi_render|-] [PATTERN]" >&2
     exit 1
 fi
 aset=$1
