@@ -207,8 +207,11 @@ check-examples: $(BUILD)/aset examples ## every example's pictures against golde
 check-cluster: $(BUILD)/aset $(BUILD)/tests/convert $(if $(shell command -v mpicc),$(BUILD)/cluster/mpi_render) ## many jobs and ranks draw one picture: the same bytes, troubles, times (a minute)
 	@bash tests/cluster.sh $(BUILD)/aset $(BUILD)/tests/convert $(if $(shell command -v mpicc),$(BUILD)/cluster/mpi_render,-)
 
-check-readme: $(ARCHIVES) ## the README's program is examples/smallest.c
-	@bash tests/readme.sh
+check-readme: $(ARCHIVES) ## the programs in README and docs compile and run, and the README's is examples/smallest.c
+	@bash tests/docs.sh $(BUILD) "$(CC)" quick
+
+check-docs: $(BUILD)/aset $(BUILD)/tests/convert examples ## the same, and the commands that README and docs show
+	@bash tests/docs.sh $(BUILD) "$(CC)"
 
 check-valgrind: $(BUILD)/aset examples ## the demo's programs under valgrind
 	bash tests/valgrind.sh $(BUILD)
@@ -323,6 +326,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:
