@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #define ARENA_BYTES ((size_t)64 << 20)
@@ -34,6 +35,7 @@ typedef struct queue {
     uint32_t next, n_left;                     /* the first row not dealt yet; rows that are not here */
     unsigned long n_messages, n_twice;
     unsigned long *by_rank; /* rows that each rank was the first to bring */
+    double drawing_s, busiest_s; /* processor time of all that was drawn, and of the rank that drew longest */
 } queue;
 
 /* Everything that draws: the same on each rank. */
@@ -50,6 +52,7 @@ typedef struct drawing {
 
 static int rank, n_ranks;
 static drawing d;
+static double drawing_s; /* processor time of this rank's draw */
 
 /* One line, and the end of all ranks. */
 static void fail(const char *subject, const char *what) {
@@ -184,17 +187,19 @@ static void prepare(const char *path, const char *size_text) {
 
 static void draw(unsigned char *to, uint32_t row) {
     const aset_picture picture = {.width = d.view.width_px, .height = d.view.height_px, .pixels = to};
+    clock_t start = clock();
     aset_status status = aset_render_rows(&d.tracer, &d.view, &picture, row, 1, &d.scratch, NULL);
     if (status != ASET_OK) {
         fail("drawing", aset_status_text(status));
     }
+    drawing_s += (double)(clock() - start) / CLOCKS_PER_SEC;
 }
 
 /* ---- the other ranks ---- */
 
 /*
  * An answer is the first row's number, how many there are, and their pixels; the first one is empty. Told to go, a rank says
- * farewell, so that nothing is on its way when all end.
+ * farewell, so that nothing is on its way when all end, and how long it drew.
  */
 static void serve(void) {
     uint32_t run[2] = {0, 0}, nothing[2];
@@ -216,7 +221,7 @@ static void serve(void) {
             MPI_Recv(nothing, 2, MPI_UINT32_T, 0, DISMISSED, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
         }
     }
-    MPI_Send(nothing, 0, MPI_BYTE, 0, FAREWELL, MPI_COMM_WORLD);
+    MPI_Send(&drawing_s, (int)sizeof drawing_s, MPI_BYTE, 0, FAREWELL, MPI_COMM_WORLD);
     free(answer);
 }
 
@@ -256,6 +261,11 @@ static void keep(queue *q, uint32_t row, const unsigned char *pixels, int from) 
     q->n_left--;
 }
 
+static void add_time(queue *q, double s) {
+    q->drawing_s += s;
+    q->busiest_s = s > q->busiest_s ? s : q->busiest_s;
+}
+
 /* Takes one answer, and gives its sender more to do unless all is here. True: it was a farewell. */
 static bool take_answer(queue *q, unsigned char *answer) {
     MPI_Status status;
@@ -264,6 +274,9 @@ static bool take_answer(queue *q, unsigned char *answer) {
              &status);
     q->n_messages++;
     if (status.MPI_TAG == FAREWELL) {
+        double s;
+        memcpy(&s, answer, sizeof s);
+        add_time(q, s);
         return true;
     }
     memcpy(run, answer, sizeof run);
@@ -327,8 +340,9 @@ static void write_picture(const queue *q, const char *path) {
 }
 
 static void tell(const queue *q, double prepared_s, double drawn_s) {
-    printf("%d ranks, %.3f s to prepare, %.3f s to draw, %lu messages, %lu rows twice; rows by rank:", n_ranks, prepared_s,
-           drawn_s, q->n_messages, q->n_twice);
+    printf("%d ranks, %.3f s to prepare, %.3f s to draw (%.3f s of processors, %.3f s of the busiest rank), %lu messages, "
+           "%lu rows twice; rows by rank:",
+           n_ranks, prepared_s, drawn_s, q->drawing_s, q->busiest_s, q->n_messages, q->n_twice);
     for (int i = 0; i < n_ranks; i++) {
         printf(" %lu", q->by_rank[i]);
     }
@@ -336,7 +350,7 @@ static void tell(const queue *q, double prepared_s, double drawn_s) {
 }
 
 static void collect(const char *path, double start, double prepared) {
-    queue q = {NULL, NULL, NULL, 0, d.view.height_px, 0, 0, NULL};
+    queue q = {.n_left = d.view.height_px};
     unsigned char *answer = take(2 * sizeof(uint32_t) + RUN_MAX * d.row_bytes);
     q.pixels = take(d.row_bytes * d.view.height_px);
     q.is_done = take(d.view.height_px);
@@ -349,6 +363,7 @@ static void collect(const char *path, double start, double prepared) {
     double drawn = MPI_Wtime();
     write_picture(&q, path);
     dismiss(&q, answer);
+    add_time(&q, drawing_s);
     tell(&q, prepared - start, drawn - prepared);
     free(q.pixels);
     free(q.is_done);
