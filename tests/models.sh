@@ -214,6 +214,35 @@ colours() {
     works_and_says "$unknown Invalid argument" render a.obj -s 16
 }
 
+# File managers hand over copies whose names say nothing, and want a PNG in a file called anything.
+names_of_any_kind() {
+    local pair way
+    ball 8 >ball.obj
+    for pair in $formats; do
+        "$convert" ball.obj model."${pair#*:}" "${pair%:*}"
+        cp model."${pair#*:}" copy
+        works model."${pair#*:}" named.png -s 24
+        works copy nameless.png -s 24
+        same named.png nameless.png "${pair%:*} by its bytes: another picture"
+        works copy .thumbnail.XYZ --png -s 24 -q
+        same named.png .thumbnail.XYZ "${pair%:*}: --png draws another picture"
+    done
+    works render copy -s 24 --png -o ppm.ppm --transparent
+    [ "$(od -An -c -N4 ppm.ppm | tr -d ' ')" = '211PNG' ] || fail "--png is no PNG: $(od -An -c -N4 ppm.ppm)"
+    refuses 2 "aset: .thumbnail.XYZ: cannot tell the kind of picture " copy .thumbnail.XYZ -s 24
+    { printf '# %s\n\n' "a comment" && cat ball.obj; } >copy
+    works copy nameless.png -s 24
+    printf 'v\nfrom 0 0 5\n' >copy # NFF needs its name
+    refuses 1 "aset: copy: neither a scene by its name nor a model by its first bytes" copy a.png
+    printf 'plain text\n' >copy
+    refuses 1 "aset: copy: neither " copy a.png
+    : >copy
+    refuses 1 "aset: copy: neither " copy a.png
+    head -c 90 /dev/zero >copy
+    refuses 1 "aset: copy: neither " copy a.png
+    [ ! -e a.png ] || fail "there is a picture"
+}
+
 # ---- bad files ----
 
 bad_parts_are_counted() {
@@ -303,7 +332,7 @@ times_are_told_apart() {
 
 cases="
 all_formats all_formats_of_further_models short_form_is_a_draft little_memory many_vertices flat_holds_no_triangle axes_and_ground the_view_fits
-transparent colours bad_parts_are_counted bad_files odd_models wrong_words info_of_a_model times_are_told_apart
+transparent colours names_of_any_kind bad_parts_are_counted bad_files odd_models wrong_words info_of_a_model times_are_told_apart
 "
 # shellcheck disable=SC2086
 run_cases $cases
