@@ -24,7 +24,7 @@
 
 #define ARENA_BYTES ((size_t)64 << 20)
 #define SIDE_MAX 65535
-#define RUN_MAX 64 /* rows in a run at the most: what a rank's answer takes in memory */
+#define RUN_MAX 64        /* rows in a run at the most: what a rank's answer takes in memory */
 #define DRAWING_DEALER 16 /* among more ranks than this rank 0 only deals */
 
 enum { ANSWER = 1, RUN, DISMISSED, FAREWELL };
@@ -34,7 +34,7 @@ typedef struct queue {
     unsigned char *pixels, *is_done, *n_dealt; /* the picture; for each row: is it here, how often was it given out */
     uint32_t next, n_left;                     /* the first row not dealt yet; rows that are not here */
     unsigned long n_messages, n_twice;
-    unsigned long *by_rank; /* rows that each rank was the first to bring */
+    unsigned long *by_rank;      /* rows that each rank was the first to bring */
     double drawing_s, busiest_s; /* processor time of all that was drawn, and of the rank that drew longest */
 } queue;
 
@@ -329,7 +329,8 @@ static void write_picture(const queue *q, const char *path) {
     snprintf(temporary, size, "%s.%ld.part", path, (long)getpid());
     FILE *file = fopen(temporary, "wb");
     bool written = file != NULL;
-    written = written && fprintf(file, "P6\n%lu %lu\n255\n", (unsigned long)d.view.width_px, (unsigned long)d.view.height_px) > 0;
+    written =
+        written && fprintf(file, "P6\n%lu %lu\n255\n", (unsigned long)d.view.width_px, (unsigned long)d.view.height_px) > 0;
     written = written && fwrite(q->pixels, 1, n, file) == n;
     written = (file == NULL || fclose(file) == 0) && written;
     if (!written || rename(temporary, path) != 0) {
