@@ -185,7 +185,11 @@ pid=$!
 case $kind in
 slow) while kill -STOP $pid 2>/dev/null; do sleep 0.2; kill -CONT $pid; sleep 0.01; done ;;
 stopped)
-    sleep 0.5
+    # when it has drawn for a while: before that all wait for each other
+    for i in $(seq 600); do
+        [ "$(awk '{ print $14 + $15 }' /proc/$pid/stat)" -ge 30 ] && break
+        sleep 0.05
+    done
     kill -STOP $pid
     for i in $(seq 300); do [ -e "$picture" ] && break; sleep 0.1; done
     [ -e "$picture" ] && : >"$picture.before"
@@ -207,7 +211,9 @@ mpi_survives_a_slow_rank() {
     same a.ppm expected.ppm "another picture"
     sed 's/.*by rank://' "$out" | awk '{ exit !(2 * $2 < ($1 + $3) / 2) }' || fail "the slow rank drew as much: $(cat "$out")"
     rm a.ppm
-    run mpi 3 "$top/trouble" stopped a.ppm "$mpi_render" "$scenes/gears.nff" a.ppm 400x300
+    [ -r /proc/self/stat ] || return 0
+    works render "$scenes/gears.nff" -s 900x700 -o expected.ppm
+    run mpi 3 "$top/trouble" stopped a.ppm "$mpi_render" "$scenes/gears.nff" a.ppm 900x700
     [ $status -eq 0 ] || fail "stopped: status $status: $(head -n 3 "$err")"
     same a.ppm expected.ppm "stopped: another picture"
     [ -e a.ppm.before ] || fail "the picture waited for a rank that had stopped"

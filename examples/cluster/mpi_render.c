@@ -7,7 +7,8 @@
  * Rank 0 alone reads the file and hands its bytes to all, so no shared folder is needed. Rows are dealt in runs that become
  * shorter towards the end (guided self-scheduling, Polychronopoulos and Kuck 1987: the rest by twice the ranks), so a slow rank
  * takes fewer. When no row is left to be dealt, those still on their way are dealt a second time to who has nothing to
- * do, and the first answer counts: both are the same bytes. So the picture waits for no rank, and the end for one row of it.
+ * do, and the first answer counts: both are the same bytes. So the picture waits for no rank, unless one stops in the midst of
+ * sending, and the end waits for one row of it.
  * The picture stands in rank 0's memory and gets its name when it is whole; a rank that fails ends all of them with one
  * line and status 1.
  */
