@@ -104,7 +104,7 @@ typedef struct aset_load_report {
     /* Models, counted up to the end or the error: */
     uint64_t triangles; /* given to the sink and taken */
     /*
-     * Triangles left out because a coordinate is not finite or beyond what the library takes (10^15, 10^150 in double) or
+     * Triangles left out because a coordinate is not finite or beyond what models may have (10^15, 10^150 in double) or
      * because the sink refused them with ASET_ERR_GEOMETRY, and faces of fewer than 3 points. No sink of the library
      * refuses a triangle without area or one that came before: they are no faults, and no ray hits the former.
      */

@@ -8,7 +8,7 @@
 #define ASET_READER_TOKEN 128u
 
 /*
- * Stands for a coordinate that is not finite or too large for a number: beyond what the library takes, and safe to compare.
+ * Stands for a coordinate that is not finite or too large for a number: beyond what models may have, and safe to compare.
  */
 #if ASET_REAL_BITS == 32
 #define ASET_NUMBER_OUTSIDE ((aset_real)3e38)
