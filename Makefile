@@ -146,7 +146,7 @@ test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset al
 test-long: $(BUILD)/aset ## every method against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)
 	bash tests/long.sh $(BUILD)/aset $(BUILD)/long
 
-EXTREMES := test_tight test_self test_scale test_degenerate test_oracle
+EXTREMES := test_tight test_self test_scale test_degenerate test_oracle test_arguments
 check-extremes: $(addprefix $(BUILD)/tests/,$(EXTREMES)) ## geometry at its worst, with all the rays promised (minutes)
 	@failed=; for t in $(EXTREMES); do echo "== $$t"; ASET_LONG=1 $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi
@@ -260,6 +260,9 @@ bench-drafts: $(BUILD)/tests/bench_drafts ## from triangles to a picture: a draf
 plan-check: $(BUILD)/aset ## a plan's expectations against what happens, on the seven SPD scenes and three odd ones (minutes)
 	bash tests/plan-check.sh $(BUILD)/aset $(BUILD)/plan-check
 
+numerics: $(addprefix $(BUILD)/tests/,test_scale test_oracle bench_robust) ## the tables of docs/numerics.md: errors by place and object, costs
+	bash tools/numerics.sh $(BUILD)/tests $(BUILD)/numerics docs/numerics.md
+
 tables: $(BUILD)/aset ## the paper's Tables 1 to 4 beside ours, into docs/tables.md
 	$(BUILD)/aset tables --markdown -o docs/tables.md
 
@@ -326,6 +329,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: numerics check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

@@ -237,7 +237,7 @@ static void ask_colour(bench *b, const aset_ray *ray) {
 }
 
 static uint32_t rays_each(void) {
-    return (long_run() ? RAYS_LONG : RAYS) / (SCENES * METHODS);
+    return (uint32_t)(long_run() ? RAYS_LONG : RAYS) / (SCENES * METHODS);
 }
 
 /* How often a scene is made anew for its rays. */
