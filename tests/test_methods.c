@@ -7,6 +7,8 @@
  */
 #include "support/rays.h"
 
+#include "trace/query.h"
+
 #include "approx/summary.h"
 #include "base/bits.h"
 #include "space/cells.h"
@@ -1378,7 +1380,10 @@ static void test_methods__coincident_spheres(void **state) {
     model_free(&m);
 }
 
-/* Straight at the scene from ever farther away, to the largest number there is: every method sees what brute force sees. */
+/*
+ * Straight at the scene from ever farther away, to the largest numbers: the ray is brought all the way to the scene, and every method sees
+ * what brute force sees.
+ */
 static void test_methods__rays_from_the_end_of_the_numbers(void **state) {
     (void)state;
     random_state r = random_start(seed_of(640));
@@ -1404,6 +1409,9 @@ static void test_methods__rays_from_the_end_of_the_numbers(void **state) {
                 set_axis(&ray.direction, i % 3, down ? -length : length);
                 set_axis(&ray.direction, (i + 1) % 3, i < 6 ? 0 : REAL_LEAST / 16); /* which moves it nowhere */
                 check(same_closest(&a, &b, &ray, &found), "%s, " SEED ", from %g", families[f].name, r.seed, (double)away);
+                probe moved;
+                (void)query_ready(&moved, &s.scene, ray.origin, vec_unit(ray.direction));
+                check(real_abs(moved.origin[i % 3]) < 8, "from %g moved to %g", (double)away, (double)moved.origin[i % 3]);
                 hits += found;
                 rays++;
             }
