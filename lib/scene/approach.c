@@ -6,11 +6,12 @@
 
 /* Where a ray from outside is made to start: this part of the scene's size before the box. */
 #define NEAR R(0.0625)
-/* A move leaves an origin off by 2^-24 (2^-53) of the way it had: so many lead here from the end of the numbers to the least. */
+#define APPROACHES 4
+/* A move leaves an origin off by some 2^-22 (2^-51) of the way it had: so many lead here from the end of the numbers to the least. */
 #if ASET_REAL_BITS == 32
-#define APPROACHES 12
+#define APPROACHES_FROM_AFAR 12
 #else
-#define APPROACHES 40
+#define APPROACHES_FROM_AFAR 40
 #endif
 
 /* The larger of an origin's distances to both sides of a box, on one axis. */
@@ -51,9 +52,9 @@ aset_real approach_move(probe *ray, const aset_scene *scene) {
         return 0;
     }
     aset_real moved = 0, near = NEAR * vec_largest(vec_sub(scene->high, scene->low));
-    for (int i = 0; i < APPROACHES; i++) { /* from very far away the first move ends up somewhere near: so again */
+    for (int i = 0; i < APPROACHES_FROM_AFAR; i++) { /* from very far away the first move ends up somewhere near: so again */
         aset_real step = distance_to(ray, scene->low, scene->high, scene->margin) - near;
-        if (!(step > 0)) {
+        if (!(step > (i < APPROACHES ? 0 : near))) {
             break;
         }
         for (int a = 0; a < 3; a++) {
