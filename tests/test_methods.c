@@ -11,6 +11,7 @@
 
 #include "approx/summary.h"
 #include "base/bits.h"
+#include "scene/approach.h"
 #include "space/cells.h"
 #include "space/slices.h"
 #include "space/tree.h"
@@ -1410,7 +1411,7 @@ static void test_methods__rays_from_the_end_of_the_numbers(void **state) {
                 set_axis(&ray.direction, (i + 1) % 3, i < 6 ? 0 : REAL_LEAST / 16); /* which moves it nowhere */
                 check(same_closest(&a, &b, &ray, &found), "%s, " SEED ", from %g", families[f].name, r.seed, (double)away);
                 probe moved;
-                (void)query_ready(&moved, &s.scene, ray.origin, vec_unit(ray.direction));
+                (void)approach_ready(&moved, &s.scene, ray.origin, vec_unit(ray.direction));
                 check(real_abs(moved.origin[i % 3]) < 8, "from %g moved to %g", (double)away, (double)moved.origin[i % 3]);
                 hits += found;
                 rays++;

@@ -55,7 +55,7 @@ static void bounce(tally *sum, const aset_tracer *tracer, random_state *r, dvec 
         return; /* rounding turned it inwards */
     }
     sum->left++;
-    sum->again += query_any(tracer, shade_start(&s, leaving), leaving, REAL_INFINITY, false, &statistics);
+    sum->again += query_any(tracer, shade_start(&s, leaving), leaving, REAL_INFINITY, false, REAL_INFINITY, &statistics);
 }
 
 static void report(const char *what, const tally *sum, uint64_t seed) {

@@ -1152,7 +1152,7 @@ static void test_trace__rendering_refuses_bad_arguments(void **state) {
     aset_view view = view_from(12, 5, 4), bad_view;
     aset_picture p = picture_of(8, 6, ASET_RGB888), bad;
     aset_tracer tracer = st.tracer;
-    aset_scratch none = {NULL, 0};
+    aset_scratch none = {0};
     assert_int_equal(aset_render_rows(NULL, &view, &p, 0, 1, &st.scratch, NULL), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_render_rows(&tracer, NULL, &p, 0, 1, &st.scratch, NULL), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_render_rows(&tracer, &view, NULL, 0, 1, &st.scratch, NULL), ASET_ERR_ARGUMENT);
