@@ -219,8 +219,8 @@ check-valgrind: $(BUILD)/aset examples ## the demo's programs under valgrind
 werror: ## everything without a single warning
 	$(MAKE) BUILD=$(BUILD)/werror CFLAGS="-O2 -Werror" all $(addprefix $(BUILD)/werror/tests/,$(TESTS))
 
-size: ## bytes of code of the core: all of it, and the smallest useful sets
-	@bash tools/size.sh "$(CC)" $(BUILD)/size
+size: ## bytes of code by feature, for Cortex-M (make deps-firmware) and the host, into docs/size.md; an error above the limits
+	@bash tools/size.sh "$(CC)" $(BUILD)/size docs/size.md
 
 # --- demo: pictures to look at ---
 

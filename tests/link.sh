@@ -79,7 +79,8 @@ without exact exact_answers 'draft_|aset_(draft|baker|summary)|facet_|summary_|t
 other=64
 case "$build" in *double*) other=32 ;; esac
 for switch in ASET_REAL_BITS=$other "ASET_WITH_POLYGONS=0 -DASET_WITH_PATCHES=0" ASET_WITH_PATCHES=0 ASET_WITH_SPHERES=0 \
-    ASET_WITH_CONES=0 ASET_WITH_REFLECTION=0 ASET_WITH_REFRACTION=0 ASET_WITH_APPROXIMATION=0; do
+    ASET_WITH_CONES=0 ASET_WITH_REFLECTION=0 ASET_WITH_REFRACTION=0 ASET_WITH_APPROXIMATION=0 \
+    "ASET_WITH_POLYGONS=0 -DASET_WITH_PATCHES=0 -DASET_WITH_SPHERES=0 -DASET_WITH_CONES=0"; do
     base=$flags
     case "$switch" in ASET_REAL_BITS*) base=${flags/-DASET_REAL_BITS=64/} ;; esac
     # shellcheck disable=SC2086

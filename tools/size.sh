@@ -84,30 +84,52 @@ lto="-flto -flto-partition=one -fno-ipa-cp"
 m4="-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16"
 m0="-mcpu=cortex-m0plus -mthumb -mfloat-abi=soft"
 arm_link="--specs=nano.specs -nostartfiles -Wl,--gc-sections,-emain"
+host_link="-Wl,--gc-sections"
 has_arm=1
 if ! command -v arm-none-eabi-gcc > /dev/null 2>&1; then
     echo "size: arm-none-eabi-gcc is not here (make deps-firmware): the host alone is measured" >&2
     has_arm=0
 fi
 
+# The core compiled with some switches, once: the folder of its objects.
+objects() { # target's name, compiler, flags, switches
+    name=$1
+    compiler=$2
+    flags=$3
+    shift 3
+    switches=$(printf '%s\n' "$@" | grep ASET_ | sort | tr -dc 'A-Z0-9\n' | sed 's/ASETWITH//' | tr -d '\n' || true)
+    made=$dir/$name-$switches
+    if [ ! -d "$made" ]; then
+        mkdir -p "$made.new"
+        for file in $core; do
+            # shellcheck disable=SC2086
+            "$compiler" $common $flags "$@" -c "$file" -o "$made.new/$(echo "$file" | tr / _).o"
+        done
+        mv "$made.new" "$made"
+    fi
+    echo "$made"
+}
 host() { # switches
+    made=$(objects host "$cc" "" "$@")
     # shellcheck disable=SC2086
-    "$cc" $common "$@" "$dir/user.c" "$dir/data.c" $core -Wl,--gc-sections -o "$dir/program" -lm
+    "$cc" $common "$@" "$dir/user.c" "$dir/data.c" "$made"/*.o $host_link -o "$dir/program" -lm
     size "$dir/program" | awk -v empty="$empty" 'NR == 2 { print $1 + $2 - empty }'
 }
-arm() { # cpu flags, further flags, switches
-    cpu=$1
-    more=$2
+arm() { # target's name, its flags, switches
+    target=$1
+    cpu=$2
     shift 2
     if [ $has_arm = 0 ]; then echo -; return; fi
+    made=$(objects "$target" arm-none-eabi-gcc "$cpu" "$@")
     # the data lie outside of what is optimized as a whole
     # shellcheck disable=SC2086
-    arm-none-eabi-gcc $cpu $common "$@" -c "$dir/data.c" -o "$dir/data.o"
+    arm-none-eabi-gcc $common $cpu "$@" -fno-lto -c "$dir/data.c" -o "$dir/data-$target.o"
     # shellcheck disable=SC2086
-    arm-none-eabi-gcc $cpu $common $arm_link $more "$@" "$dir/user.c" "$dir/data.o" $core -o "$dir/program.elf" -lm -lgcc 2> "$dir/log" ||
-        { cat "$dir/log" >&2; exit 1; }
-    arm-none-eabi-size -A "$dir/program.elf" | awk '$1 == ".text" || $1 == ".rodata" { n += $2 } END { print n }'
+    arm-none-eabi-gcc $common $cpu $arm_link "$@" "$dir/user.c" "$dir/data-$target.o" "$made"/*.o -o "$dir/$target.elf" -lm -lgcc \
+        2> "$dir/log-$target" || { cat "$dir/log-$target" >&2; exit 1; }
+    arm-none-eabi-size -A "$dir/$target.elf" | awk '$1 == ".text" || $1 == ".rodata" { n += $2 } END { print n }'
 }
+rm -rf "$dir"/host-* "$dir"/m[04]*-*
 # shellcheck disable=SC2086
 "$cc" $common -DEMPTY "$dir/user.c" -Wl,--gc-sections -o "$dir/empty" -lm
 empty=$(size "$dir/empty" | awk 'NR == 2 { print $1 + $2 }')
@@ -126,10 +148,12 @@ measure() { # label, limit of the first column or -, switches
     label=$1
     limit=$2
     shift 2
-    small=$(arm "$m4" "$lto" "$@")
-    plain=$(arm "$m4" "" "$@")
-    soft=$(arm "$m0" "" "$@")
-    hosted=$(host "$@")
+    arm m4lto "$m4 $lto" "$@" > "$dir/small" &
+    arm m4 "$m4" "$@" > "$dir/plain" &
+    arm m0 "$m0" "$@" > "$dir/soft" &
+    host "$@" > "$dir/hosted"
+    wait
+    small=$(cat "$dir/small") plain=$(cat "$dir/plain") soft=$(cat "$dir/soft") hosted=$(cat "$dir/hosted")
     say "| $label | $small | $plain | $soft | $hosted |"
     check "$label" "$small" "$limit"
 }
@@ -156,10 +180,10 @@ say "|---|---|---|---|---|"
     done
     # nothing dropped: every function of the core, and what these ask of libm, libgcc and for mem*
     arm_link="--specs=nano.specs -nostartfiles -Wl,-emain"
-    whole=$(arm "$m4" "" -DMETHOD=aset_mset)
-    soft=$(arm "$m0" "" -DMETHOD=aset_mset)
-    "$cc" $common -DMETHOD=aset_mset "$dir/user.c" "$dir/data.c" $core -o "$dir/program" -lm
-    say "| the whole core, nothing dropped | - | $whole | $soft | $(size "$dir/program" | awk -v empty="$empty" 'NR == 2 { print $1 + $2 - empty }') |"
+    host_link=""
+    whole=$(arm m4 "$m4" -DMETHOD=aset_mset)
+    soft=$(arm m0 "$m0" -DMETHOD=aset_mset)
+    say "| the whole core, nothing dropped | - | $whole | $soft | $(host -DMETHOD=aset_mset) |"
     check "the whole core" "$whole" 65536
 }
 if [ -n "$page" ] && [ $has_arm = 1 ]; then
