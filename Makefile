@@ -17,6 +17,7 @@ say =
 endif
 
 CC ?= cc
+CXX ?= c++
 AR ?= ar
 CFLAGS ?= -O2 -g
 # No contraction: pictures and counts are the same on every machine only if a * b + c is rounded twice everywhere.
@@ -222,6 +223,9 @@ werror: ## everything without a single warning
 size: ## bytes of code by feature, for Cortex-M (make deps-firmware) and the host, into docs/size.md; an error above the limits
 	@bash tools/size.sh "$(CC)" $(BUILD)/size docs/size.md
 
+consumers: $(ARCHIVES) $(SHARED) $(BUILD)/aset $(BUILD)/examples/smallest ## other programs that take the library in, in every way of docs/linking.md
+	@bash tests/consumers/run.sh $(BUILD) "$(CC)" "$(CXX)" $(ARGS)
+
 # --- demo: pictures to look at ---
 
 demo: $(BUILD)/aset $(addprefix $(BUILD)/examples/,$(EXAMPLES)) ## draw gears, tetra and snow, exact and approximate, into build/demo
@@ -284,11 +288,12 @@ deps: ## install what is missing: compiler, make, pkg-config, libpng, cmocka
 deps-cluster: ## install what examples/cluster needs: GNU parallel, Open MPI
 	bash tools/deps-cluster.sh
 
-$(BUILD)/libaset.pc: Makefile include/aset/config.h
+# Written anew each time: it depends on PREFIX and on the switches.
+$(BUILD)/libaset.pc: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' 'Name: libaset' \
 	  'Description: approximate ray tracing in a memory budget fixed at compile time' 'Version: $(VERSION)' \
-	  'Libs: -L$${libdir} -laset_procedural -laset_load -laset -lm' 'Cflags: -I$${includedir}' > $@
+	  'Libs: -L$${libdir} -laset_procedural -laset_load -laset -lm' 'Cflags: -I$${includedir}$(addprefix $() ,$(filter -DASET_%,$(CPPFLAGS) $(CFLAGS)))' > $@
 
 install: $(ARCHIVES) $(SHARED) $(BUILD)/aset $(BUILD)/libaset.pc ## install under DESTDIR/PREFIX
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/include/aset
@@ -329,6 +334,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: numerics check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: FORCE consumers numerics check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:
