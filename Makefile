@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := all
 
 VERSION := $(shell sed -n 's/^\#define ASET_VERSION "\(.*\)"/\1/p' include/aset/config.h)
-SOVERSION := $(firstword $(subst ., ,$(VERSION)))
+SOVERSION := $(shell sed -n 's/^\#define ASET_ABI //p' include/aset/config.h)
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
 BUILD ?= build
@@ -55,7 +55,7 @@ $(BUILD)/obj/%.o: %.c
 $(BUILD)/pic/%.o: %.c
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) $(EXTRA) -fPIC -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) $(EXTRA) -fPIC -fvisibility=hidden -MMD -MP -c $< -o $@
 
 $(CORE_A): $(call objects,$(CORE),obj)
 $(LOAD_A): $(call objects,$(LOAD),obj)

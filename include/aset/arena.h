@@ -6,9 +6,7 @@
 
 #include "aset/types.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 /* The one list of categories: it makes the enum, the accounting, the report's lines and the keys of its JSON. */
 #define ASET_CATEGORIES(X)                                                                                             \
@@ -79,7 +77,5 @@ void aset_arena_release(aset_arena *arena, const aset_mark *mark);
 const char *aset_category_name(aset_category category);
 const char *aset_category_text(aset_category category);
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

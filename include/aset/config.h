@@ -13,6 +13,12 @@
 #define ASET_VERSION_PATCH 0
 #define ASET_VERSION "0.1.0"
 
+/*
+ * The number of the binary interface: it goes up by one when a program compiled with the last release's headers would not
+ * work with this library, and the shared library carries it in its name (libaset.so.0).
+ */
+#define ASET_ABI 0
+
 /* Bits of a real number: 32 (float, the default and the one all published byte counts use) or 64 (double). */
 #ifndef ASET_REAL_BITS
 #define ASET_REAL_BITS 32
@@ -70,6 +76,25 @@
 #define ASET_WITH_OBJECTS (ASET_WITH_POLYGONS || ASET_WITH_SPHERES || ASET_WITH_CONES)
 #if !ASET_WITH_OBJECTS && !ASET_WITH_DRAFTS
 #error "switch on at least one kind of object, ASET_WITH_POLYGONS, ASET_WITH_SPHERES or ASET_WITH_CONES, or ASET_WITH_DRAFTS"
+#endif
+
+/*
+ * Around the declarations of each public header: C linkage, and visible in a shared library, where everything else is hidden
+ * (-fvisibility=hidden).
+ */
+#if defined(__GNUC__) && !defined(_WIN32)
+#define ASET_VISIBLE_BEGIN _Pragma("GCC visibility push(default)")
+#define ASET_VISIBLE_END _Pragma("GCC visibility pop")
+#else
+#define ASET_VISIBLE_BEGIN
+#define ASET_VISIBLE_END
+#endif
+#ifdef __cplusplus
+#define ASET_HEADER_BEGIN ASET_VISIBLE_BEGIN extern "C" {
+#define ASET_HEADER_END } ASET_VISIBLE_END
+#else
+#define ASET_HEADER_BEGIN ASET_VISIBLE_BEGIN
+#define ASET_HEADER_END ASET_VISIBLE_END
 #endif
 
 /*

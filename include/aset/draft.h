@@ -15,9 +15,7 @@
 
 #include "aset/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 #if ASET_WITH_DRAFTS
 
@@ -162,7 +160,5 @@ aset_material aset_draft_texture(const aset_draft *draft, uint32_t facet);
 
 #endif
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

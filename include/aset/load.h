@@ -10,9 +10,7 @@
 
 #include "aset/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 /* Names that carry the layout's switches: see config.h. */
 
@@ -179,7 +177,5 @@ aset_status aset_load_ply(const aset_sink *sink, aset_read read, void *context, 
 aset_status aset_load_obj(const aset_sink *sink, aset_read read, void *context, const aset_load_options *options,
                           aset_load_report *report);
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

@@ -6,9 +6,7 @@
 
 #include "aset/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 /*
  * Emits one scene into sink: view, background, lights, then materials and objects. size 0 takes the scene's default size.
@@ -30,7 +28,5 @@ const aset_procedural *aset_procedural_at(size_t index);
 /* The scene of that name (balls, gears, mount, rings, teapot, tetra, tree, snow, tetra-moon, skull), or NULL. */
 const aset_procedural *aset_procedural_find(const char *name);
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

@@ -6,9 +6,7 @@
 
 #include "aset/trace.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 /* What to report. Every pointer but tracer may be NULL, and its part is then left out of the text and 0 in the JSON. */
 typedef struct aset_report {
@@ -29,7 +27,5 @@ typedef struct aset_report {
 size_t aset_report_text(char *buffer, size_t size, const aset_report *report);
 size_t aset_report_json(char *buffer, size_t size, const aset_report *report);
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

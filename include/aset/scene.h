@@ -9,9 +9,7 @@
 
 #include "aset/arena.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 /*
  * Where entities go. A source calls the functions in this order: view, background and lights at any time; a material before
@@ -157,7 +155,5 @@ aset_status aset_scene_emit(const aset_sink *sink, const aset_scene *scene);
 /* The box of one object (number below counts.objects), without any margin: a cone's is the exact box of its two discs. */
 void aset_object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high);
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

@@ -15,9 +15,7 @@
 
 #include "aset/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 typedef struct aset_method aset_method;
 
@@ -236,7 +234,5 @@ aset_status aset_space_measure(aset_space_size *size, const aset_scene *scene, c
 aset_status aset_space_build(aset_space *space, const aset_scene *scene, const aset_method *method,
                              const aset_space_options *options, aset_arena *arena);
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

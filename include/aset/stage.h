@@ -7,9 +7,7 @@
 
 #include "aset/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 /* The axis that points upwards. */
 typedef enum aset_up { ASET_UP_Y, ASET_UP_Z } aset_up;
@@ -47,7 +45,5 @@ aset_material aset_stage_material(void);
 aset_status aset_stage_emit(const aset_sink *sink, const aset_vec3 *low, const aset_vec3 *high,
                             const aset_stage_options *options);
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

@@ -6,9 +6,7 @@
 
 #include "aset/space.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 #if ASET_WITH_APPROXIMATION
 
@@ -51,7 +49,5 @@ aset_status aset_summary_build(aset_summary *summary, const aset_space *space, u
 
 #endif
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

@@ -11,9 +11,7 @@
 #include "aset/reach.h"
 #include "aset/summary.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 /* Fill it with zeros, then set what you need; a field at 0 means what its comment says. */
 typedef struct aset_tracer {
@@ -129,7 +127,5 @@ typedef struct aset_picture {
 aset_status aset_render_rows(const aset_tracer *tracer, const aset_view *view, const aset_picture *picture,
                              uint32_t first_row, uint32_t n_rows, aset_scratch *scratch, aset_statistics *statistics);
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

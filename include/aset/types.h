@@ -11,9 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 #if ASET_REAL_BITS == 32
 typedef float aset_real;
@@ -123,7 +121,5 @@ typedef struct aset_statistics {
 /* Adds every count of from to those of to: for statistics kept by several threads. */
 void aset_statistics_add(aset_statistics *to, const aset_statistics *from);
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

@@ -16,3 +16,17 @@ check() { # a program draws the same picture
     cmp "$1.ppm" "$EXPECTED"
     echo "$1 draws the same picture"
 }
+
+exports() { # archives, shared libraries, objects: they give other programs names of libaset only
+    for file in "$@"; do
+        case $file in
+        *.so*) names=$(nm -D --defined-only "$file") ;;
+        *) continue ;;
+        esac
+        names=$(echo "$names" | awk 'NF == 3 && $3 !~ /^aset_/ && !seen[$3]++ { print $3 }')
+        if [ -n "$names" ]; then
+            echo "$file exports names that are not libaset's:" $names
+            exit 1
+        fi
+    done
+}
