@@ -223,7 +223,13 @@ werror: ## everything without a single warning
 size: ## bytes of code by feature, for Cortex-M (make deps-firmware) and the host, into docs/size.md; an error above the limits
 	@bash tools/size.sh "$(CC)" $(BUILD)/size docs/size.md
 
-consumers: $(ARCHIVES) $(SHARED) $(BUILD)/aset $(BUILD)/examples/smallest ## other programs that take the library in, in every way of docs/linking.md
+amalgamation: $(BUILD)/amalgamation/aset.c ## two files that hold the whole library: build/amalgamation/aset.c and aset.h
+$(BUILD)/amalgamation/aset.c: tools/amalgamate.awk LICENSE $(wildcard include/aset/*.h lib/*/*.h) $(CORE) $(LOAD) $(PROCEDURAL)
+	@mkdir -p $(@D)
+	$(call say,AWK)
+	$(Q)awk -f tools/amalgamate.awk -v out=$(@D) $(wordlist 2,$(words $^),$^)
+
+consumers: amalgamation $(ARCHIVES) $(SHARED) $(BUILD)/aset $(BUILD)/examples/smallest ## other programs that take the library in, in every way of docs/linking.md
 	@bash tests/consumers/run.sh $(BUILD) "$(CC)" "$(CXX)" $(ARGS)
 
 # --- demo: pictures to look at ---
@@ -334,6 +340,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: FORCE consumers numerics check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: amalgamation FORCE consumers numerics check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

@@ -950,10 +950,15 @@ static void test_nff__skip_peek_and_raw(void **state) {
             assert_int_equal(aset_reader_peek(&reader, 9, &seen, &n), ASET_OK);
             assert_int_equal(n, ASET_READER_BUFFER < 9 ? ASET_READER_BUFFER : 9);
             assert_memory_equal(seen, binary, n);
-            assert_int_equal(aset_reader_raw(&reader, got, 5, &n), ASET_OK);
-            assert_int_equal(n, 5);
-            assert_int_equal(aset_reader_raw(&reader, got + 5, sizeof got - 5, &n), ASET_OK);
-            assert_int_equal(n, sizeof binary - 5);
+            size_t taken = 0;
+            do {
+                assert_int_equal(aset_reader_peek(&reader, 5, &seen, &n), ASET_OK);
+                assert_true(taken + n <= sizeof got);
+                memcpy(got + taken, seen, n);
+                aset_reader_advance(&reader, n);
+                taken += n;
+            } while (n > 0);
+            assert_int_equal(taken, sizeof binary);
             assert_memory_equal(got, binary, sizeof binary);
             assert_int_equal(reader.offset, (size_t)header + sizeof binary);
             assert_int_equal(aset_reader_peek(&reader, 3, &seen, &n), ASET_OK);

@@ -302,24 +302,6 @@ void aset_reader_advance(aset_reader *reader, size_t n) {
     reader->after_cr = false;
 }
 
-aset_status aset_reader_raw(aset_reader *reader, void *bytes, size_t size, size_t *n) {
-    unsigned char *to = bytes;
-    *n = 0;
-    while (*n < size) {
-        int byte;
-        const aset_status status = look(reader, &byte);
-        if (status != ASET_OK || byte < 0) {
-            return status;
-        }
-        const size_t here = reader->end - reader->at;
-        const size_t part = here < size - *n ? here : size - *n;
-        memcpy(to + *n, reader->bytes + reader->at, part);
-        aset_reader_advance(reader, part);
-        *n += part;
-    }
-    return ASET_OK;
-}
-
 /* ---- tokens ---- */
 
 /* The current token begins at the next byte. */

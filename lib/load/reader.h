@@ -105,9 +105,6 @@ aset_status aset_reader_window(aset_reader *reader, size_t wanted, const unsigne
 /* Takes n of the bytes shown, lines not counted. */
 void aset_reader_advance(aset_reader *reader, size_t n);
 
-/* Takes size bytes as they are, lines not counted. *n is smaller only at the end of the input. */
-aset_status aset_reader_raw(aset_reader *reader, void *bytes, size_t size, size_t *n);
-
 /* The current token's place. */
 aset_place aset_reader_place(const aset_reader *reader);
 

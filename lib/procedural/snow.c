@@ -22,7 +22,7 @@
 #include <math.h>
 
 static const emit_surface ice = {0.64, 0.83, 1.00, 0.58, 0.40, 40.0, 0.0, 0.0};
-static const emit_surface snow = {1.00, 0.98, 0.96, 0.80, 0.10, 12.0, 0.0, 0.0};
+static const emit_surface white = {1.00, 0.98, 0.96, 0.80, 0.10, 12.0, 0.0, 0.0};
 static const emit_surface red = {0.90, 0.10, 0.08, 0.75, 0.10, 30.0, 0.0, 0.0};
 
 /* Half the gap between the pond and what stands on it: the slice lies in its middle. Boxes grow by less, about 3e-5. */
@@ -405,7 +405,7 @@ aset_status aset_procedural_snow(const aset_sink *sink, uint32_t size) {
     emit_pond(&p, corners);
     emit_crystals(&p);
     emit_flakes(&p);
-    material(&p, &snow);
+    material(&p, &white);
     emit_fir(&p, 0.42, 0.35, 0.36);
     emit_fir(&p, 0.62, 0.20, 0.28);
     emit_heap(&p);
