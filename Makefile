@@ -135,6 +135,8 @@ $(BUILD)/tests/bench_peers $(BUILD)/tests/bench_drafts: $(BUILD)/tests/%: tests/
 	  $(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $$with -o $@ $< $(PROCEDURAL_A) $(CORE_A) $$lib -lm
 
 test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset all check-layers check-link check-recursion check-readme check-man check-completion ## run the tests, in under two minutes
+
+test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset all check-layers check-link check-recursion check-readme check-manifests ## run the tests, in under two minutes
 	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
 	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
 	  echo "== faults.sh"; bash tests/faults.sh $(BUILD)/aset || failed="$$failed faults.sh"; \
@@ -229,6 +231,17 @@ $(BUILD)/amalgamation/aset.c: tools/amalgamate.awk LICENSE $(wildcard include/as
 	$(call say,AWK)
 	$(Q)awk -f tools/amalgamate.awk -v out=$(@D) $(wordlist 2,$(words $^),$^)
 
+arduino: amalgamation ## the same as a library for the Arduino IDE: the folder build/arduino/libaset
+	@mkdir -p $(BUILD)/arduino/libaset/src
+	$(Q)cp library.properties README.md LICENSE $(BUILD)/arduino/libaset
+	$(Q)cp $(BUILD)/amalgamation/aset.[ch] $(BUILD)/arduino/libaset/src
+
+check-manifests: ## versions and sources that other build systems are told; each public header alone in C99 and C++11
+	@bash tests/manifests.sh $(BUILD) "$(CC)" "$(CXX)"
+
+check-abi: $(SHARED) ## the shared library's interface against the last one written down (needs abidw and abidiff)
+	@bash tests/abi.sh $(BUILD) $(ARGS)
+
 consumers: amalgamation $(ARCHIVES) $(SHARED) $(BUILD)/aset $(BUILD)/examples/smallest ## other programs that take the library in, in every way of docs/linking.md
 	@bash tests/consumers/run.sh $(BUILD) "$(CC)" "$(CXX)" $(ARGS)
 
@@ -294,6 +307,9 @@ deps: ## install what is missing: compiler, make, pkg-config, libpng, cmocka
 deps-cluster: ## install what examples/cluster needs: GNU parallel, Open MPI
 	bash tools/deps-cluster.sh
 
+deps-consumers: ## install what make consumers and check-abi want besides: a C++ compiler, CMake, Meson, Ninja, abigail-tools
+	bash tools/deps.sh consumers
+
 # Written anew each time: it depends on PREFIX and on the switches.
 $(BUILD)/libaset.pc: FORCE
 	@mkdir -p $(@D)
@@ -340,6 +356,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: amalgamation FORCE consumers numerics check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: arduino check-manifests check-abi deps-consumers amalgamation FORCE consumers numerics check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

@@ -444,7 +444,7 @@ END {
         "ASET_AMALGAMATION_PROCEDURAL=1 the scenes of procedural.h.")
     print "#include \"aset.h\"" > source
     print "\n/* What the switches leave without a caller is static here. */" > source
-    print "#ifdef __GNUC__\n#pragma GCC diagnostic ignored \"-Wunused-function\"\n#endif" > source
+    print "#if defined(__GNUC__) || defined(__clang__)\n#pragma GCC diagnostic ignored \"-Wunused-function\"\n#endif" > source
     emit_rooms(source, " base scene space approx trace ")
     print "\n#if defined(ASET_AMALGAMATION_LOAD) && ASET_AMALGAMATION_LOAD" > source
     emit_rooms(source, " load ")

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Installs what libaset's build and tests need and the machine lacks, through the system's package manager.
+# Installs what libaset's build and tests need and the machine lacks, through the system's package manager: deps.sh [consumers]
+# consumers: what make consumers and make check-abi want besides.
 set -eu
 
 missing=""
@@ -13,8 +14,16 @@ if have pkg-config; then
 else
     missing="$missing libpng cmocka"
 fi
+if [ "${1:-}" = consumers ]; then
+    have c++ || have g++ || have clang++ || missing="$missing c++"
+    have cmake || missing="$missing cmake"
+    have meson || missing="$missing meson"
+    have ninja || missing="$missing ninja"
+    have git || missing="$missing git"
+    have abidiff || ! { have apt-get || have dnf; } || missing="$missing abigail"
+fi
 if [ -z "$missing" ]; then
-    echo "deps: compiler, make, pkg-config, libpng and cmocka are here; nothing to do"
+    echo "deps: everything asked for is here; nothing to do"
     exit 0
 fi
 echo "deps: missing:$missing"
@@ -22,6 +31,8 @@ echo "deps: missing:$missing"
 # The package of each need, for the manager at hand: apt, dnf, pacman, apk, brew.
 package() {
     case "$1:$2" in
+    apt:c++ | apk:c++) echo g++ ;; dnf:c++) echo gcc-c++ ;; pacman:c++ | brew:c++) echo gcc ;;
+    apt:ninja | dnf:ninja) echo ninja-build ;; apt:abigail) echo abigail-tools ;; *:abigail) echo libabigail ;;
     apt:compiler) echo gcc libc6-dev ;; apt:libpng) echo libpng-dev ;; apt:cmocka) echo libcmocka-dev ;;
     dnf:compiler) echo gcc ;; dnf:libpng) echo libpng-devel ;; dnf:cmocka) echo libcmocka-devel ;; dnf:pkg-config) echo pkgconf ;;
     pacman:compiler) echo gcc ;; pacman:pkg-config) echo pkgconf ;;
