@@ -308,6 +308,8 @@ deps-cluster: ## install what examples/cluster needs: GNU parallel, Open MPI
 	bash tools/deps-cluster.sh
 
 deps-consumers: ## install what make consumers and check-abi want besides: a C++ compiler, CMake, Meson, Ninja, abigail-tools
+
+deps-consumers: ## install what make consumers and check-abi want besides: a C++ compiler, CMake, Meson, MinGW, abigail-tools
 	bash tools/deps.sh consumers
 
 # Written anew each time: it depends on PREFIX and on the switches.

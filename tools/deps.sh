@@ -20,6 +20,7 @@ if [ "${1:-}" = consumers ]; then
     have meson || missing="$missing meson"
     have ninja || missing="$missing ninja"
     have git || missing="$missing git"
+    have x86_64-w64-mingw32-g++ || ! have apt-get || missing="$missing mingw"
     have abidiff || ! { have apt-get || have dnf; } || missing="$missing abigail"
 fi
 if [ -z "$missing" ]; then
@@ -32,7 +33,7 @@ echo "deps: missing:$missing"
 package() {
     case "$1:$2" in
     apt:c++ | apk:c++) echo g++ ;; dnf:c++) echo gcc-c++ ;; pacman:c++ | brew:c++) echo gcc ;;
-    apt:ninja | dnf:ninja) echo ninja-build ;; apt:abigail) echo abigail-tools ;; *:abigail) echo libabigail ;;
+    apt:ninja | dnf:ninja) echo ninja-build ;; apt:mingw) echo g++-mingw-w64-x86-64 ;; apt:abigail) echo abigail-tools ;; *:abigail) echo libabigail ;;
     apt:compiler) echo gcc libc6-dev ;; apt:libpng) echo libpng-dev ;; apt:cmocka) echo libcmocka-dev ;;
     dnf:compiler) echo gcc ;; dnf:libpng) echo libpng-devel ;; dnf:cmocka) echo libcmocka-devel ;; dnf:pkg-config) echo pkgconf ;;
     pacman:compiler) echo gcc ;; pacman:pkg-config) echo pkgconf ;;

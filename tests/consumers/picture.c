@@ -14,6 +14,10 @@
 
 #include <stdio.h>
 #include <string.h>
+#ifdef _WIN32
+#include <fcntl.h>
+#include <io.h>
+#endif
 
 #define SIDE 256
 #define CHECK(call)                                                                                                    \
@@ -132,6 +136,9 @@ int main(void) {
     aset_picture picture;
 #ifdef WITH_SOURCES
     CHECK(check_procedural());
+#endif
+#ifdef _WIN32
+    _setmode(1, _O_BINARY);
 #endif
     memset(&limits, 0, sizeof limits);
     limits.objects = 28;
