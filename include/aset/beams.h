@@ -15,6 +15,8 @@
 extern "C" {
 #endif
 
+typedef struct aset_beams aset_beams;
+
 #if ASET_WITH_DRAFTS
 
 /* Private: a voxel and the pixels whose eye rays may come through it. */
@@ -29,7 +31,7 @@ typedef struct aset_beam_voxel {
 struct aset_beam_calls;
 
 /* Memory for one thread's beams, to be named in its scratch (scratch.beams). Private. */
-typedef struct aset_beams {
+struct aset_beams {
     const struct aset_beam_calls *calls;
     aset_beam_voxel *voxels; /* of the band */
     uint16_t *in_row, *in_segment, *chosen;
@@ -42,7 +44,7 @@ typedef struct aset_beams {
     uint32_t check, width, height, samples;
     aset_real corner;
     bool parallel, can_see;
-} aset_beams;
+};
 
 /* Most voxels of a band. */
 #define ASET_BEAMS_MAX 65535u

@@ -31,7 +31,10 @@ typedef struct aset_reach_map {
     uint32_t tiles;  /* on a side; 0: no map, rays are walked whole */
 } aset_reach_map;
 
+struct aset_reach_calls;
+
 typedef struct aset_reach {
+    const struct aset_reach_calls *calls;
     const aset_draft *draft;
     aset_reach_map *lights; /* one for each of draft->stage */
 } aset_reach;

@@ -1,5 +1,5 @@
 /*
- * beam.c - which voxels lie before which pixels.
+ * beam.c - rows of a draft's picture in beams of eight pixels: which voxels lie before which pixels, and what is drawn of them.
  *
  *     band of 8 rows    +-+---+------+--      its voxels, nearest first, each with its columns and rows
  *                       | |   |      |
@@ -10,20 +10,27 @@
  * The order is one in which every ray from the eye passes what it meets: away from the eye's own voxel on each axis, blocks
  * before voxels. A band that shows more voxels than there is room for is left to single rays.
  */
-#include "trace/beam.h"
-
 #include "approx/draft_beam.h"
 #include "approx/draft_query.h"
+#include "trace/drawing.h"
 #include "trace/outlook.h"
 
 #include <string.h>
 
 #if ASET_WITH_DRAFTS
 
+#define BEAM_RAYS ((uint32_t)DRAFT_BEAM)
+#define BEAM_ROWS 8u
 #define SEGMENT 64u
 #define NONE UINT32_MAX
 /* Pixels that an outline's edges may err by: a picture's width has 16 bits, and a float 24. */
 #define PAD R(0.02)
+
+/* The eye rays of neighbouring pixels, and what they meet. */
+typedef struct beam_rays {
+    aset_vec3 origins[DRAFT_BEAM], directions[DRAFT_BEAM];
+    eye_hits hits[DRAFT_BEAM];
+} beam_rays;
 
 typedef struct order {
     uint8_t at[3][128]; /* blocks on each axis, in order */
@@ -33,7 +40,8 @@ typedef struct order {
 
 typedef struct band_maker {
     aset_beams *beams;
-    const beam_frame *frame;
+    const drawing *picture;
+    const aset_draft *draft;
     outlook_cells cells;
     aset_outlook outlook;
     order order;
@@ -42,7 +50,7 @@ typedef struct band_maker {
 
 /* The eye's voxel on an axis; before all or behind all of them if everything is seen from there. */
 static int32_t eye_voxel(const band_maker *m, int a) {
-    const aset_draft *draft = m->frame->draft;
+    const aset_draft *draft = m->draft;
     int32_t n = (int32_t)draft->n[a];
     if (m->outlook.parallel) {
         return vec_at(&m->outlook.forward, a) >= 0 ? -1 : n;
@@ -53,7 +61,7 @@ static int32_t eye_voxel(const band_maker *m, int a) {
 
 static void make_order(band_maker *m) {
     for (int a = 0; a < 3; a++) {
-        int32_t n = (int32_t)m->frame->draft->blocks[a], voxel = eye_voxel(m, a), eye = voxel < 0 ? -1 : voxel / 4, at = 0;
+        int32_t n = (int32_t)m->draft->blocks[a], voxel = eye_voxel(m, a), eye = voxel < 0 ? -1 : voxel / 4, at = 0;
         for (int32_t k = eye < 0 ? 0 : eye; k < n; k++) {
             m->order.at[a][at++] = (uint8_t)k;
         }
@@ -82,9 +90,9 @@ static const uint8_t *voxel_order(const order *o, int a, uint32_t block) {
 
 /* The pixels, of n, of whose samples some lie between low and high in -1..1. False: none. */
 static bool pixels_between(int32_t *first, int32_t *last, aset_real low, aset_real high, uint32_t size, uint32_t n,
-                           const beam_frame *f) {
-    aset_real half = R(0.5) / (aset_real)(int32_t)f->samples, scale = (aset_real)(int32_t)size / 2, end = (aset_real)(int32_t)n;
-    aset_real from = (low + 1) * scale + f->corner - (1 - half) - PAD, to = (high + 1) * scale + f->corner - half + PAD;
+                           const drawing *d) {
+    aset_real half = R(0.5) / (aset_real)(int32_t)d->samples, scale = (aset_real)(int32_t)size / 2, end = (aset_real)(int32_t)n;
+    aset_real from = (low + 1) * scale + d->corner - (1 - half) - PAD, to = (high + 1) * scale + d->corner - half + PAD;
     if (!(from < end && to >= 0)) {
         return false;
     }
@@ -96,12 +104,12 @@ static bool pixels_between(int32_t *first, int32_t *last, aset_real low, aset_re
 /* Adds a voxel if the band shows it. False: no room. */
 static bool add_voxel(band_maker *m, const uint8_t block[3], uint32_t dense, uint32_t x, uint32_t y, uint32_t z) {
     aset_beams *b = m->beams;
-    const beam_frame *f = m->frame;
+    const drawing *d = m->picture;
     aset_vec3 middle = outlook_middle(&m->cells, block[0] * 4u + x, block[1] * 4u + y, block[2] * 4u + z);
     outlook_rectangle r = outlook_of(&m->outlook, vec_sub(middle, m->outlook.from), 1);
     int32_t left, right, top, bottom, first = (int32_t)m->first_row;
-    if (!pixels_between(&top, &bottom, r.top, r.bottom, f->height, f->rows, f) || bottom < first ||
-        top >= first + (int32_t)BEAM_ROWS || !pixels_between(&left, &right, r.left, r.right, f->width, f->columns, f)) {
+    if (!pixels_between(&top, &bottom, r.top, r.bottom, d->picture->height, d->rows, d) || bottom < first ||
+        top >= first + (int32_t)BEAM_ROWS || !pixels_between(&left, &right, r.left, r.right, d->picture->width, d->columns, d)) {
         return true;
     }
     if (b->n_voxels == b->capacity) {
@@ -122,7 +130,7 @@ static bool add_voxel(band_maker *m, const uint8_t block[3], uint32_t dense, uin
 
 /* Does the band show anything of the block? */
 static bool shows_block(const band_maker *m, const uint8_t block[3]) {
-    const beam_frame *f = m->frame;
+    const drawing *d = m->picture;
     aset_vec3 corner = outlook_middle(&m->cells, block[0] * 4u, block[1] * 4u, block[2] * 4u);
     aset_vec3 way = vec_sub(vec_add(corner, vec_scale(m->cells.voxel, R(1.5))), m->outlook.from);
     int32_t top, bottom;
@@ -130,14 +138,14 @@ static bool shows_block(const band_maker *m, const uint8_t block[3]) {
         return true; /* it reaches beside the eye, though no voxel does */
     }
     outlook_rectangle r = outlook_of(&m->outlook, way, 4);
-    return pixels_between(&top, &bottom, r.top, r.bottom, f->height, f->rows, f) && bottom >= (int32_t)m->first_row &&
+    return pixels_between(&top, &bottom, r.top, r.bottom, d->picture->height, d->rows, d) && bottom >= (int32_t)m->first_row &&
            top < (int32_t)(m->first_row + BEAM_ROWS);
 }
 
 static bool add_block(band_maker *m, const uint8_t block[3], uint32_t dense) {
     const uint8_t *in_x = voxel_order(&m->order, 0, block[0]), *in_y = voxel_order(&m->order, 1, block[1]);
     const uint8_t *in_z = voxel_order(&m->order, 2, block[2]);
-    uint64_t marks = draft_marks(m->frame->draft, dense);
+    uint64_t marks = draft_marks(m->draft, dense);
     for (int z = 0; z < 4; z++) {
         for (int y = 0; y < 4; y++) {
             unsigned row = (unsigned)(marks >> (16 * in_z[z] + 4 * in_y[y])) & 15u;
@@ -152,7 +160,7 @@ static bool add_block(band_maker *m, const uint8_t block[3], uint32_t dense) {
 }
 
 static bool fill_band(band_maker *m) {
-    const aset_draft *draft = m->frame->draft;
+    const aset_draft *draft = m->draft;
     const uint32_t *n = draft->blocks;
     for (uint32_t z = 0; z < n[2]; z++) {
         for (uint32_t y = 0; y < n[1]; y++) {
@@ -173,51 +181,59 @@ static bool same(aset_vec3 a, aset_vec3 b) {
 }
 
 /* Are the beams of this very draft, eye and picture already? */
-static bool is_of(const aset_beams *b, const beam_frame *f) {
-    const camera *eye = f->eye;
-    return b->words == f->draft->words && b->check == f->draft->words[WORD_CHECK] && same(b->eye[0], eye->from) &&
+static bool is_of(const aset_beams *b, const drawing *d) {
+    const aset_draft *draft = d->tracer->draft;
+    const camera *eye = &d->eye;
+    return b->words == draft->words && b->check == draft->words[WORD_CHECK] && same(b->eye[0], eye->from) &&
            same(b->eye[1], eye->forward) && same(b->eye[2], eye->right) && same(b->eye[3], eye->down) &&
-           b->parallel == eye->orthographic && b->width == f->width && b->height == f->height && b->samples == f->samples &&
-           b->corner == f->corner;
+           b->parallel == eye->orthographic && b->width == d->picture->width && b->height == d->picture->height &&
+           b->samples == d->samples && b->corner == d->corner;
 }
 
-static bool begin(aset_beams *beams, const beam_frame *frame) {
-    const camera *eye = frame->eye;
-    if (is_of(beams, frame)) {
+static bool begin(aset_beams *beams, const drawing *d) {
+    const aset_draft *draft = d->tracer->draft;
+    const camera *eye = &d->eye;
+    if (is_of(beams, d)) {
         return beams->can_see;
     }
-    outlook_cells cells = outlook_cells_of(frame->draft);
+    outlook_cells cells = outlook_cells_of(draft);
     aset_outlook outlook;
     outlook_set_camera(&outlook, eye);
     beams->band = beams->segment = NONE;
-    beams->words = frame->draft->words;
-    beams->check = frame->draft->words[WORD_CHECK];
+    beams->words = draft->words;
+    beams->check = draft->words[WORD_CHECK];
     beams->eye[0] = eye->from;
     beams->eye[1] = eye->forward;
     beams->eye[2] = eye->right;
     beams->eye[3] = eye->down;
     beams->parallel = eye->orthographic;
-    beams->width = frame->width;
-    beams->height = frame->height;
-    beams->samples = frame->samples;
-    beams->corner = frame->corner;
-    beams->can_see = frame->draft->n_facets > 0 && outlook_can_see(&outlook, &cells);
+    beams->width = d->picture->width;
+    beams->height = d->picture->height;
+    beams->samples = d->samples;
+    beams->corner = d->corner;
+    beams->can_see = draft->n_facets > 0 && outlook_can_see(&outlook, &cells);
     return beams->can_see;
 }
 
-static bool begin_row(aset_beams *beams, const beam_frame *frame, uint32_t row) {
+static void make_band(aset_beams *beams, const drawing *d, uint32_t band) {
+    band_maker m;
+    m.beams = beams;
+    m.picture = d;
+    m.draft = d->tracer->draft;
+    m.first_row = band * BEAM_ROWS;
+    m.cells = outlook_cells_of(m.draft);
+    outlook_set_camera(&m.outlook, &d->eye);
+    outlook_set_voxels(&m.outlook, &m.cells, 0);
+    make_order(&m);
+    beams->band = band;
+    beams->n_voxels = 0;
+    beams->overflow = !fill_band(&m);
+}
+
+/* The band's voxels that a row meets. False: there were too many for the band. */
+static bool begin_row(aset_beams *beams, const drawing *d, uint32_t row) {
     if (beams->band != row / BEAM_ROWS) {
-        band_maker m;
-        m.beams = beams;
-        m.frame = frame;
-        m.first_row = row / BEAM_ROWS * BEAM_ROWS;
-        m.cells = outlook_cells_of(frame->draft);
-        outlook_set_camera(&m.outlook, frame->eye);
-        outlook_set_voxels(&m.outlook, &m.cells, 0);
-        make_order(&m);
-        beams->band = row / BEAM_ROWS;
-        beams->n_voxels = 0;
-        beams->overflow = !fill_band(&m);
+        make_band(beams, d, row / BEAM_ROWS);
     }
     uint32_t in_band = row % BEAM_ROWS, n = 0;
     for (uint32_t i = 0; i < beams->n_voxels; i++) {
@@ -230,6 +246,7 @@ static bool begin_row(aset_beams *beams, const beam_frame *frame, uint32_t row) 
     return !beams->overflow;
 }
 
+/* Chooses the voxels before the pixels from column on, a multiple of BEAM_RAYS. False: there are none. */
 static bool choose(aset_beams *beams, uint32_t column) {
     if (beams->segment != column / SEGMENT) {
         uint32_t from = column / SEGMENT * SEGMENT, to = from + SEGMENT - 1, n = 0;
@@ -251,7 +268,8 @@ static bool choose(aset_beams *beams, uint32_t column) {
     return n > 0;
 }
 
-static void meet(aset_beams *beams, beam_rays *rays, uint32_t n, const aset_tracer *tracer, aset_statistics *statistics) {
+/* What n rays through the pixels chosen for meet: voxels, and objects that the draft keeps. */
+static void meet(const aset_beams *beams, beam_rays *rays, uint32_t n, const aset_tracer *tracer, aset_statistics *statistics) {
     draft_beam beam;
     query_hit kept[BEAM_RAYS];
     aset_real ends[BEAM_RAYS];
@@ -275,7 +293,62 @@ static void meet(aset_beams *beams, beam_rays *rays, uint32_t n, const aset_trac
     }
 }
 
-static const struct aset_beam_calls calls = {begin, begin_row, choose, meet};
+/* n pixels of background: their rays meet nothing. */
+static void draw_background(const drawing *d, uint32_t n, unsigned char *at) {
+    size_t bytes = aset_format_bytes(d->picture->format);
+    gathered g = {{0, 0, 0}, 0};
+    for (uint32_t i = 0; i < d->samples * d->samples; i++) {
+        drawing_gather(&g, d->tracer->scene->background, 0);
+    }
+    drawing_put(d, &g, at);
+    for (uint32_t i = 1; i < n; i++) {
+        memcpy(at + i * bytes, at, bytes);
+    }
+    d->statistics->primary += (uint64_t)n * d->samples * d->samples;
+}
+
+/* n pixels whose rays go in one beam. */
+static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column, uint32_t row, uint32_t n, unsigned char *at) {
+    beam_rays rays;
+    gathered g[BEAM_RAYS];
+    memset(g, 0, sizeof g);
+    for (uint32_t j = 0; j < d->samples; j++) {
+        for (uint32_t i = 0; i < d->samples; i++) {
+            for (uint32_t k = 0; k < n; k++) {
+                drawing_ray(d, column + k, row, i, j, &rays.origins[k], &rays.directions[k]);
+            }
+            meet(beams, &rays, n, d->tracer, d->statistics);
+            for (uint32_t k = 0; k < n; k++) {
+                aset_real cover;
+                aset_colour c = trace_tree(d->tracer, rays.origins[k], rays.directions[k], &rays.hits[k], d->scratch,
+                                           d->statistics, &cover);
+                drawing_gather(&g[k], c, cover);
+            }
+        }
+    }
+    for (uint32_t k = 0; k < n; k++) {
+        drawing_put(d, &g[k], at + k * aset_format_bytes(d->picture->format));
+    }
+}
+
+static bool draw_row(aset_beams *beams, const drawing *d, uint32_t row, unsigned char *line) {
+    size_t bytes = aset_format_bytes(d->picture->format);
+    bool alone = d->tracer->draft->stage.counts.objects == 0; /* nothing is met but voxels */
+    if (!begin_row(beams, d, row)) {
+        return false;
+    }
+    for (uint32_t column = 0; column < d->columns; column += BEAM_RAYS) {
+        uint32_t n = d->columns - column < BEAM_RAYS ? d->columns - column : BEAM_RAYS;
+        if (choose(beams, column) || !alone) {
+            draw_beam(beams, d, column, row, n, line + column * bytes);
+        } else {
+            draw_background(d, n, line + column * bytes);
+        }
+    }
+    return true;
+}
+
+static const struct aset_beam_calls calls = {begin, draw_row};
 
 aset_status aset_beams_init(aset_beams *beams, uint32_t voxels, aset_arena *arena) {
     if (beams == NULL || arena == NULL || voxels < 1 || voxels > ASET_BEAMS_MAX) {

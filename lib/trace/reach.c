@@ -72,32 +72,7 @@ static void fill(aset_reach_map *map, const aset_draft *draft, const outlook_cel
     }
 }
 
-aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t tiles, aset_arena *arena) {
-    if (reach == NULL || draft == NULL || arena == NULL || tiles < 1 || tiles > ASET_REACH_TILES_MAX) {
-        return ASET_ERR_ARGUMENT;
-    }
-    uint32_t n_lights = draft->stage.counts.lights;
-    unsigned char *at = aset_arena_alloc(arena, ASET_BYTES_REACH(tiles, n_lights), ASET_CATEGORY_SCRATCH);
-    if (at == NULL) {
-        return ASET_ERR_NOMEM;
-    }
-    const outlook_cells cells = outlook_cells_of(draft);
-    reach->draft = draft;
-    reach->lights = (aset_reach_map *)(void *)at;
-    at += ASET_ROUND((size_t)n_lights * sizeof(aset_reach_map));
-    for (uint32_t i = 0; i < n_lights; i++, at += ASET_ROUND((size_t)tiles * tiles * sizeof(aset_real))) {
-        aset_reach_map *map = reach->lights + i;
-        look_from(&map->outlook, draft->stage.lights + i, &cells);
-        map->near = (aset_real *)(void *)at;
-        map->tiles = outlook_can_see(&map->outlook, &cells) ? tiles : 0;
-        if (map->tiles > 0) {
-            fill(map, draft, &cells);
-        }
-    }
-    return ASET_OK;
-}
-
-aset_real reach_last(const aset_reach *reach, uint32_t light, aset_vec3 point, aset_real off, const light_ray *towards) {
+static aset_real last_before(const aset_reach *reach, uint32_t light, aset_vec3 point, aset_real off, const light_ray *towards) {
     const aset_reach_map *map = reach->lights + light;
     const aset_outlook *o = &map->outlook;
     if (map->tiles == 0 || !(off <= OFF_MOST * reach->draft->column)) {
@@ -113,6 +88,34 @@ aset_real reach_last(const aset_reach *reach, uint32_t light, aset_vec3 point, a
         return 0;
     }
     return (o->parallel ? depth : towards->distance) - map->near[tile_at(map, y) * map->tiles + tile_at(map, x)];
+}
+
+static const struct aset_reach_calls calls = {last_before};
+
+aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t tiles, aset_arena *arena) {
+    if (reach == NULL || draft == NULL || arena == NULL || tiles < 1 || tiles > ASET_REACH_TILES_MAX) {
+        return ASET_ERR_ARGUMENT;
+    }
+    uint32_t n_lights = draft->stage.counts.lights;
+    unsigned char *at = aset_arena_alloc(arena, ASET_BYTES_REACH(tiles, n_lights), ASET_CATEGORY_SCRATCH);
+    if (at == NULL) {
+        return ASET_ERR_NOMEM;
+    }
+    const outlook_cells cells = outlook_cells_of(draft);
+    reach->calls = &calls;
+    reach->draft = draft;
+    reach->lights = (aset_reach_map *)(void *)at;
+    at += ASET_ROUND((size_t)n_lights * sizeof(aset_reach_map));
+    for (uint32_t i = 0; i < n_lights; i++, at += ASET_ROUND((size_t)tiles * tiles * sizeof(aset_real))) {
+        aset_reach_map *map = reach->lights + i;
+        look_from(&map->outlook, draft->stage.lights + i, &cells);
+        map->near = (aset_real *)(void *)at;
+        map->tiles = outlook_can_see(&map->outlook, &cells) ? tiles : 0;
+        if (map->tiles > 0) {
+            fill(map, draft, &cells);
+        }
+    }
+    return ASET_OK;
 }
 
 #endif

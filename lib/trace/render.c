@@ -4,10 +4,8 @@
  * No row depends on another one, so threads may share the rows out as they like.
  */
 #include "base/vec.h"
-#include "trace/beam.h"
-#include "trace/camera.h"
+#include "trace/drawing.h"
 #include "trace/shade.h"
-#include "trace/trace_tree.h"
 
 #include <string.h>
 
@@ -53,45 +51,21 @@ static void put_pixel(unsigned char *at, const aset_picture *picture, aset_colou
     }
 }
 
-typedef struct drawing {
-    const aset_tracer *tracer;
-    const aset_picture *picture;
-    camera eye;
-    uint32_t columns, rows; /* rays at one a pixel */
-    uint32_t samples;
-    aset_real corner; /* pixel corners lie half a pixel before the centres */
-    aset_scratch *scratch;
-    aset_statistics *statistics;
-#if ASET_WITH_DRAFTS
-    aset_beams *beams; /* NULL: rays are traced one by one */
-    beam_frame frame;
-    bool alone; /* nothing is met but what beams show: no object is kept beside the draft's cells */
-#endif
-} drawing;
-
-/* What a pixel has gathered of its samples. */
-typedef struct gathered {
-    aset_colour sum;
-    aset_real cover;
-} gathered;
-
-/* The eye ray of sample (i, j). */
-static void sample_ray(const drawing *d, uint32_t column, uint32_t row, uint32_t i, uint32_t j, aset_vec3 *origin,
-                       aset_vec3 *direction) {
+void drawing_ray(const drawing *d, uint32_t column, uint32_t row, uint32_t i, uint32_t j, aset_vec3 *origin, aset_vec3 *direction) {
     aset_real n = (aset_real)d->samples;
     aset_real x = (aset_real)column - d->corner + ((aset_real)i + R(0.5)) / n;
     aset_real y = (aset_real)row - d->corner + ((aset_real)j + R(0.5)) / n;
     camera_ray(&d->eye, 2 * x / (aset_real)d->picture->width - 1, 2 * y / (aset_real)d->picture->height - 1, origin, direction);
 }
 
-static void gather(gathered *g, aset_colour c, aset_real cover) {
+void drawing_gather(gathered *g, aset_colour c, aset_real cover) {
     g->sum.r += clamp(c.r);
     g->sum.g += clamp(c.g);
     g->sum.b += clamp(c.b);
     g->cover += cover;
 }
 
-static void put_gathered(const drawing *d, const gathered *g, unsigned char *at) {
+void drawing_put(const drawing *d, const gathered *g, unsigned char *at) {
     aset_real n = (aset_real)d->samples, share = 1 / (n * n);
     aset_colour mean = {g->sum.r * share, g->sum.g * share, g->sum.b * share};
     put_pixel(at, d->picture, mean, g->cover * share);
@@ -103,93 +77,37 @@ static void draw_pixel(const drawing *d, uint32_t column, uint32_t row, unsigned
         for (uint32_t i = 0; i < d->samples; i++) {
             aset_vec3 origin, direction;
             aset_real cover;
-            sample_ray(d, column, row, i, j, &origin, &direction);
+            drawing_ray(d, column, row, i, j, &origin, &direction);
             aset_colour c = trace_tree(d->tracer, origin, direction, NULL, d->scratch, d->statistics, &cover);
-            gather(&g, c, cover);
+            drawing_gather(&g, c, cover);
         }
     }
-    put_gathered(d, &g, at);
+    drawing_put(d, &g, at);
 }
 
+static void draw_row(const drawing *d, aset_beams *beams, uint32_t row, unsigned char *line) {
 #if ASET_WITH_DRAFTS
-
-/* n pixels of background: their rays meet nothing. */
-static void draw_background(const drawing *d, uint32_t n, unsigned char *at) {
-    size_t bytes = aset_format_bytes(d->picture->format);
-    gathered g = {{0, 0, 0}, 0};
-    for (uint32_t i = 0; i < d->samples * d->samples; i++) {
-        gather(&g, d->tracer->scene->background, 0);
-    }
-    put_gathered(d, &g, at);
-    for (uint32_t i = 1; i < n; i++) {
-        memcpy(at + i * bytes, at, bytes);
-    }
-    d->statistics->primary += (uint64_t)n * d->samples * d->samples;
-}
-
-/* n pixels whose rays go in one beam. */
-static void draw_beam(const drawing *d, uint32_t column, uint32_t row, uint32_t n, unsigned char *at) {
-    beam_rays rays;
-    gathered g[BEAM_RAYS];
-    memset(g, 0, sizeof g);
-    for (uint32_t j = 0; j < d->samples; j++) {
-        for (uint32_t i = 0; i < d->samples; i++) {
-            for (uint32_t k = 0; k < n; k++) {
-                sample_ray(d, column + k, row, i, j, &rays.origins[k], &rays.directions[k]);
-            }
-            d->beams->calls->meet(d->beams, &rays, n, d->tracer, d->statistics);
-            for (uint32_t k = 0; k < n; k++) {
-                aset_real cover;
-                aset_colour c = trace_tree(d->tracer, rays.origins[k], rays.directions[k], &rays.hits[k], d->scratch,
-                                           d->statistics, &cover);
-                gather(&g[k], c, cover);
-            }
-        }
-    }
-    for (uint32_t k = 0; k < n; k++) {
-        put_gathered(d, &g[k], at + k * aset_format_bytes(d->picture->format));
-    }
-}
-
-static void draw_row_in_beams(const drawing *d, uint32_t row, unsigned char *line) {
-    size_t bytes = aset_format_bytes(d->picture->format);
-    for (uint32_t column = 0; column < d->columns; column += BEAM_RAYS) {
-        uint32_t n = d->columns - column < BEAM_RAYS ? d->columns - column : BEAM_RAYS;
-        if (d->beams->calls->choose(d->beams, column) || !d->alone) {
-            draw_beam(d, column, row, n, line + column * bytes);
-        } else {
-            draw_background(d, n, line + column * bytes);
-        }
-    }
-}
-
-/* Whether eye rays can go in beams: all of them ask the draft, by its planes. */
-static void drawing_set_beams(drawing *d) {
-    const aset_tracer *tracer = d->tracer;
-    d->beams = d->scratch->beams;
-    if (d->beams == NULL || tracer->draft == NULL || tracer->draft_sides || !policy_approximate(tracer, ASET_PRIMARY, 0)) {
-        d->beams = NULL;
-        return;
-    }
-    const beam_frame frame = {&d->eye,    tracer->draft, d->picture->width, d->picture->height,
-                              d->columns, d->rows,       d->samples,        d->corner};
-    d->frame = frame;
-    d->alone = tracer->draft->stage.counts.objects == 0;
-    d->beams = d->beams->calls->begin(d->beams, &d->frame) ? d->beams : NULL;
-}
-
-#endif
-
-static void draw_row(const drawing *d, uint32_t row, unsigned char *line) {
-#if ASET_WITH_DRAFTS
-    if (d->beams != NULL && d->beams->calls->begin_row(d->beams, &d->frame, row)) {
-        draw_row_in_beams(d, row, line);
+    if (beams != NULL && beams->calls->draw_row(beams, d, row, line)) {
         return;
     }
 #endif
+    (void)beams;
     for (uint32_t column = 0; column < d->columns; column++) {
         draw_pixel(d, column, row, line + column * aset_format_bytes(d->picture->format));
     }
+}
+
+/* The scratch's beams, if they can draw the picture: all its eye rays ask a draft, by its planes. */
+static aset_beams *beams_for(const drawing *d) {
+#if ASET_WITH_DRAFTS
+    const aset_tracer *tracer = d->tracer;
+    aset_beams *beams = d->scratch->beams;
+    bool asks = tracer->draft != NULL && !tracer->draft_sides && policy_approximate(tracer, ASET_PRIMARY, 0);
+    return beams != NULL && asks && beams->calls->begin(beams, d) ? beams : NULL;
+#else
+    (void)d;
+    return NULL;
+#endif
 }
 
 static aset_status drawing_make(drawing *d, const aset_tracer *tracer, const aset_view *view,
@@ -209,13 +127,7 @@ static aset_status drawing_make(drawing *d, const aset_tracer *tracer, const ase
     d->corner = tracer->spd_rules ? R(0.5) : 0;
     d->scratch = scratch;
     d->statistics = statistics;
-    aset_status status = camera_make(&d->eye, view, picture->width, picture->height);
-#if ASET_WITH_DRAFTS
-    if (status == ASET_OK) {
-        drawing_set_beams(d);
-    }
-#endif
-    return status;
+    return camera_make(&d->eye, view, picture->width, picture->height);
 }
 
 aset_status aset_render_rows(const aset_tracer *tracer, const aset_view *view, const aset_picture *picture,
@@ -230,9 +142,10 @@ aset_status aset_render_rows(const aset_tracer *tracer, const aset_view *view, c
     if (first_row > d.rows || n_rows > d.rows - first_row) {
         return ASET_ERR_ARGUMENT;
     }
+    aset_beams *beams = beams_for(&d);
     for (uint32_t row = 0; row < n_rows; row++) {
         unsigned char *line = (unsigned char *)picture->pixels + row * picture->stride;
-        draw_row(&d, first_row + row, line);
+        draw_row(&d, beams, first_row + row, line);
         if (picture->on_row != NULL && picture->on_row(picture->context, first_row + row, line) != 0) {
             return ASET_ERR_STOPPED;
         }

@@ -52,7 +52,7 @@ aset_vec3 shade_start_for(const shading *s, aset_vec3 direction, bool approximat
 static aset_real last_before(const aset_tracer *tracer, const shading *s, uint32_t light, const light_ray *towards) {
 #if ASET_WITH_DRAFTS
     if (tracer->reach != NULL && tracer->reach->draft == tracer->draft) {
-        return reach_last(tracer->reach, light, s->hit.point, real_max(s->clearance, s->nudge), towards);
+        return tracer->reach->calls->last(tracer->reach, light, s->hit.point, real_max(s->clearance, s->nudge), towards);
     }
 #endif
     (void)tracer, (void)s, (void)light, (void)towards;
