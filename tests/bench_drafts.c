@@ -206,14 +206,14 @@ static aset_colour embree_colour(RTCScene top, const model *m, aset_vec3 origin,
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return m->stage.background;
     }
-    aset_vec3 normal = vec_unit(vec(hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z));
+    aset_vec3 normal = aset_vec_unit(vec(hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z));
     aset_vec3 point = vec_along(origin, hit.ray.tfar, direction);
     normal = vec_dot(normal, direction) > 0 ? vec_scale(normal, -1) : normal;
     aset_vec3 start = vec_along(point, (vec_largest(point) + hit.ray.tfar) * 32 * REAL_UNIT, normal);
     aset_colour fill = m->material.fill, sum = {R(0.1) * fill.r, R(0.1) * fill.g, R(0.1) * fill.b};
     for (uint32_t i = 0; i < m->stage.counts.lights; i++) {
         light_ray towards;
-        if (!light_towards(&towards, &m->stage, m->stage.lights + i, point)) {
+        if (!aset_light_towards(&towards, &m->stage, m->stage.lights + i, point)) {
             continue;
         }
         aset_real n_dot_l = vec_dot(normal, towards.direction) * m->material.diffuse;
@@ -241,15 +241,15 @@ static bool draw_theirs(turn *r, const contest *c, RTCDevice device, const uint3
     double start = bench_seconds();
     RTCScene top = embree_build(device, c->m, corners);
     double built = bench_seconds();
-    if (camera_make(&eye, &c->m->stage.view, c->side, c->side) != ASET_OK) {
+    if (aset_camera_make(&eye, &c->m->stage.view, c->side, c->side) != ASET_OK) {
         return false;
     }
     r->rays = 0;
     for (uint32_t i = 0; i < c->side * c->side; i++) {
         aset_vec3 origin, direction;
         aset_real half = (aset_real)c->side / 2;
-        camera_ray(&eye, ((aset_real)(i % c->side) + R(0.5)) / half - 1, ((aset_real)(i / c->side) + R(0.5)) / half - 1, &origin,
-                   &direction);
+        aset_camera_ray(&eye, ((aset_real)(i % c->side) + R(0.5)) / half - 1, ((aset_real)(i / c->side) + R(0.5)) / half - 1,
+                        &origin, &direction);
         aset_colour colour = embree_colour(top, c->m, origin, direction, &r->rays);
         c->theirs[3 * i] = to_byte(colour.r);
         c->theirs[3 * i + 1] = to_byte(colour.g);

@@ -5,7 +5,7 @@
  * Embree gets triangles: polygons by clipping ears (the shortest diagonal first; the areas are compared with the
  * polygon's own), spheres as a globe of --around meridians and half as many parallels, cones as --around facets, both
  * with smooth normals. Its rays are shaded by the library's own functions of directions and lights; what is written anew
- * here is the loop of trace.c and shade_local with rtcOccluded1 in it, and the surface of a hit. First the two pictures
+ * here is the loop of trace.c and aset_shade_local with rtcOccluded1 in it, and the surface of a hit. First the two pictures
  * are compared: below 25 dB they are not the same picture, and no ratio is printed for that scene.
  *
  * Embree's default triangle test is its fastest and lets some rays slip past edges (eye rays that hit are printed for both);
@@ -360,7 +360,8 @@ static aset_vec3 mesh_normal(const mesh *m, const struct RTCHit *hit) {
         return m->faces[hit->primID];
     }
     float u = hit->u, v = hit->v, w = 1 - u - v;
-    return vec_unit(vec(w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]));
+    return aset_vec_unit(
+        vec(w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]));
 }
 
 static void peer_shading(shading *s, const mesh *m, const struct RTCRayHit *hit, aset_vec3 origin, aset_vec3 direction) {
@@ -380,7 +381,7 @@ static void peer_shading(shading *s, const mesh *m, const struct RTCRayHit *hit,
 static aset_real peer_highlight(const shading *s, aset_vec3 to_light, aset_real n_dot_l) {
     aset_vec3 mirrored = vec_sub(vec_scale(s->normal, 2 * n_dot_l), to_light);
     aset_real r_dot_v = -vec_dot(mirrored, s->direction);
-    return r_dot_v > 0 ? real_power(r_dot_v, s->hit.material->shine) : 0;
+    return r_dot_v > 0 ? aset_real_power(r_dot_v, s->hit.material->shine) : 0;
 }
 
 static aset_colour peer_local(peer *p, const shading *s) {
@@ -388,7 +389,7 @@ static aset_colour peer_local(peer *p, const shading *s) {
     aset_colour sum = {R(0.1) * m->fill.r, R(0.1) * m->fill.g, R(0.1) * m->fill.b};
     for (uint32_t i = 0; i < p->scene->counts.lights; i++) {
         light_ray towards;
-        if (!light_towards(&towards, p->scene, p->scene->lights + i, s->hit.point)) {
+        if (!aset_light_towards(&towards, p->scene, p->scene->lights + i, s->hit.point)) {
             continue;
         }
         aset_real n_dot_l = vec_dot(s->normal, towards.direction);
@@ -396,7 +397,7 @@ static aset_colour peer_local(peer *p, const shading *s) {
             continue;
         }
         p->rays++;
-        if (peer_any(p->top, shade_start(s, towards.direction), towards.direction, towards.distance)) {
+        if (peer_any(p->top, aset_shade_start(s, towards.direction), towards.direction, towards.distance)) {
             continue;
         }
         aset_real diffuse = m->diffuse * n_dot_l;
@@ -410,7 +411,7 @@ static aset_colour peer_local(peer *p, const shading *s) {
 
 static void peer_leave(aset_waiting *stack, uint32_t *n, const shading *s, aset_vec3 direction, aset_real weight,
                        uint32_t depth) {
-    aset_waiting w = {shade_start(s, direction), direction, weight, (uint16_t)depth, 0};
+    aset_waiting w = {aset_shade_start(s, direction), direction, weight, (uint16_t)depth, 0};
     stack[(*n)++] = w;
 }
 
@@ -441,11 +442,11 @@ static aset_colour peer_tree(peer *p, aset_vec3 origin, aset_vec3 direction) {
         const aset_material *m = s.hit.material;
         uint32_t depth = ray.depth + 1u;
         aset_vec3 refracted;
-        if (depth < DEPTH && m->transmittance > 0 && shade_refracted(&s, &refracted)) {
+        if (depth < DEPTH && m->transmittance > 0 && aset_shade_refracted(&s, &refracted)) {
             peer_leave(stack, &n, &s, refracted, ray.weight * m->transmittance, depth);
         }
         if (depth < DEPTH && m->specular > 0) {
-            peer_leave(stack, &n, &s, shade_reflected(&s), ray.weight * m->specular, depth);
+            peer_leave(stack, &n, &s, aset_shade_reflected(&s), ray.weight * m->specular, depth);
         }
     }
     return sum;
@@ -457,14 +458,14 @@ static unsigned char to_byte(aset_real x) {
 
 static void peer_picture(peer *p, unsigned char *pixels, uint32_t side) {
     camera eye;
-    if (camera_make(&eye, &p->scene->view, side, side) != ASET_OK) {
+    if (aset_camera_make(&eye, &p->scene->view, side, side) != ASET_OK) {
         return;
     }
     for (uint32_t row = 0; row < side; row++) {
         for (uint32_t column = 0; column < side; column++, pixels += 3) {
             aset_vec3 origin, direction;
-            camera_ray(&eye, 2 * ((aset_real)column + R(0.5)) / (aset_real)side - 1,
-                       2 * ((aset_real)row + R(0.5)) / (aset_real)side - 1, &origin, &direction);
+            aset_camera_ray(&eye, 2 * ((aset_real)column + R(0.5)) / (aset_real)side - 1,
+                            2 * ((aset_real)row + R(0.5)) / (aset_real)side - 1, &origin, &direction);
             aset_colour c = peer_tree(p, origin, direction);
             pixels[0] = to_byte(c.r);
             pixels[1] = to_byte(c.g);

@@ -72,7 +72,8 @@ static aset_real plain_outline(const aset_real *at, uint32_t n, unsigned stride,
     uint32_t head = n >= 9 * stride + 9 ? 9 : 3, n_points = (n - head) / stride;
     const aset_real *points = at + head;
     aset_real t_in, t_out;
-    if (head == 9 && (!probe_box(ray, point_at(at + 3), point_at(at + 6), &t_in, &t_out) || t_in > limit || t_out < 0)) {
+    if (head == 9 &&
+        (!aset_probe_box(ray, point_at(at + 3), point_at(at + 6), &t_in, &t_out) || t_in > limit || t_out < 0)) {
         return REAL_INFINITY;
     }
     aset_vec3 normal = point_at(at), o = probe_origin(ray), d = probe_direction(ray);
@@ -114,7 +115,8 @@ static aset_real plain_sphere(const aset_real *at, aset_vec3 o, aset_vec3 d, boo
 
 static aset_real plain_cone(const aset_real *at, aset_vec3 o, aset_vec3 d, bool one_sided) {
     aset_real height;
-    aset_vec3 base = point_at(at), axis = vec_unit_length(vec_sub(point_at(at + 4), base), &height), f = vec_sub(o, base);
+    aset_vec3 base = point_at(at), axis = aset_vec_unit_length(vec_sub(point_at(at + 4), base), &height),
+              f = vec_sub(o, base);
     aset_real r0 = real_abs(at[3]), slope = (real_abs(at[7]) - r0) / height;
     bool inside_only = at[3] < 0 || at[7] < 0;
     aset_real fk = vec_dot(f, axis), dk = vec_dot(d, axis), radius = r0 + slope * fk;
@@ -133,7 +135,7 @@ static aset_real plain_cone(const aset_real *at, aset_vec3 o, aset_vec3 d, bool 
         if (!one_sided && !inside_only) {
             return t;
         }
-        aset_vec3 across = vec_unit(vec_along(fa, t, da));
+        aset_vec3 across = aset_vec_unit(vec_along(fa, t, da));
         bool from_outside = vec_dot(vec_along(across, -slope, axis), d) < 0;
         if (from_outside != inside_only) {
             return t;
@@ -158,11 +160,11 @@ static aset_real plain_object_nearest(const aset_scene *scene, uint32_t object, 
 
 /* --- who is asked --- */
 
-aset_real object_nearest(const aset_scene *scene, uint32_t object, const probe *ray, aset_real limit) {
+aset_real aset_object_nearest(const aset_scene *scene, uint32_t object, const probe *ray, aset_real limit) {
     return is_plain ? plain_object_nearest(scene, object, ray, limit) : robust_object_nearest(scene, object, ray, limit);
 }
 
-probe probe_make(aset_vec3 origin, aset_vec3 direction) {
+probe aset_probe_make(aset_vec3 origin, aset_vec3 direction) {
     return is_plain ? plain_probe_make(origin, direction) : robust_probe_make(origin, direction);
 }
 

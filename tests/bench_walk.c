@@ -2,7 +2,7 @@
  * bench_walk.c - what the generic walk costs: MSET's exact queries as the library makes them, with a call of the visitor for
  * each non-empty cell and object numbers in batches, against the same brick walk with the tests of objects in its loop.
  *
- * Both sides move the ray near the scene, count the same things and test objects by object_nearest, so what differs is the
+ * Both sides move the ray near the scene, count the same things and test objects by aset_object_nearest, so what differs is the
  * seam alone: method->go, walk_request, walk_cell, the visitor. First every ray is asked both ways, and any difference in
  * found, t, object or the counts makes the program end with 1; then both are timed in turns, on the same rays, by processor
  * time. The ratio of two turns that follow one another feels little of whatever else the machine does.
@@ -49,7 +49,7 @@ typedef struct fused {
 
 /* True: nothing further is of interest. */
 static inline bool fused_test(fused *f, uint32_t object, bool any) {
-    aset_real t = object_nearest(f->scene, object, f->ray, f->end);
+    aset_real t = aset_object_nearest(f->scene, object, f->ray, f->end);
     f->tests++;
     f->hits += t < f->end;
     if (t < f->best || (t == f->best && f->object != ASET_NO_OBJECT && object < f->object)) {
@@ -119,7 +119,7 @@ static inline unsigned fused_map(const aset_cells *cells, uint32_t first) {
     return (unsigned)bits & 63;
 }
 
-/* sides_go with everything in it. any is a constant where this is called. */
+/* aset_sides_go with everything in it. any is a constant where this is called. */
 static inline void fused_walk(fused *f, const aset_space *space, bool any) {
     const aset_cells *cells = &space->cells;
     const aset_slices *slices = &space->slices;
@@ -133,16 +133,16 @@ static inline void fused_walk(fused *f, const aset_space *space, bool any) {
     if (cells->n_cells == 0) {
         return;
     }
-    if (dda_inside(&way, slices, ray)) {
+    if (aset_dda_inside(&way, slices, ray)) {
         if (fused_large(f, space, way.voxel, &held, any)) {
             return;
         }
         window = fused_window(space, way.voxel);
     }
-    if (!dda_enter(&way, slices, ray, &window) || way.t > f->best) {
+    if (!aset_dda_enter(&way, slices, ray, &window) || way.t > f->best) {
         return;
     }
-    brick_begin(&bricks, cells, slices, ray, &way);
+    aset_brick_begin(&bricks, cells, slices, ray, &way);
     bool inside = true, known = true;
     uint64_t n_cells = 1;
     while (inside && way.t <= f->best) {
@@ -151,7 +151,7 @@ static inline void fused_walk(fused *f, const aset_space *space, bool any) {
             known = false;
             continue;
         }
-        n_cells += known ? 0 : brick_land(&bricks, slices, ray, &way);
+        n_cells += known ? 0 : aset_brick_land(&bricks, slices, ray, &way);
         known = true;
         uint64_t marks[3];
         uint32_t rank[3];
@@ -175,12 +175,12 @@ static inline void fused_walk(fused *f, const aset_space *space, bool any) {
             inside = brick_cross(&bricks, slices, ray, &way, way.axis);
         }
     }
-    f->cells += n_cells + (known ? 0 : brick_count_rest(slices, ray, &way, inside, f->best));
+    f->cells += n_cells + (known ? 0 : aset_brick_count_rest(slices, ray, &way, inside, f->best));
 }
 
 static inline answer fused_query(const aset_tracer *tracer, const aset_ray *r, bool any, aset_statistics *statistics) {
     probe ray;
-    aset_real moved = approach_ready(&ray, tracer->scene, r->origin, r->direction);
+    aset_real moved = aset_approach_ready(&ray, tracer->scene, r->origin, r->direction);
     fused f = {tracer->scene, &ray, r->t_max - moved, r->t_max - moved, ASET_NO_OBJECT, 0, 0, 0, 0};
     fused_walk(&f, tracer->space, any);
     statistics->tests += f.tests;
@@ -205,14 +205,15 @@ static answer fused_any(const aset_tracer *tracer, const aset_ray *ray, aset_sta
 
 static answer generic_closest(const aset_tracer *tracer, const aset_ray *ray, aset_statistics *statistics) {
     query_hit hit;
-    bool found = query_closest(&hit, tracer, ray->origin, ray->direction, ray->t_max, false, statistics);
+    bool found = aset_query_closest(&hit, tracer, ray->origin, ray->direction, ray->t_max, false, statistics);
     answer result = {hit.t, hit.object, found};
     return result;
 }
 
 /* The library's any-hit tells no t and no object. */
 static answer generic_any(const aset_tracer *tracer, const aset_ray *ray, aset_statistics *statistics) {
-    answer result = {0, 0, query_any(tracer, ray->origin, ray->direction, ray->t_max, false, REAL_INFINITY, statistics)};
+    answer result = {0, 0,
+                     aset_query_any(tracer, ray->origin, ray->direction, ray->t_max, false, REAL_INFINITY, statistics)};
     return result;
 }
 
@@ -243,12 +244,12 @@ static void rays_add(rays *r, aset_vec3 origin, aset_vec3 direction, aset_real t
 /* Towards every light that the surface faces, as shade.c sends them. */
 static void add_shadow_rays(rays *shadow, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction) {
     shading s;
-    shading_make(&s, tracer, hit, direction);
+    aset_shading_make(&s, tracer, hit, direction);
     for (uint32_t i = 0; i < tracer->scene->counts.lights; i++) {
         light_ray towards;
-        if (light_towards(&towards, tracer->scene, tracer->scene->lights + i, s.hit.point) &&
+        if (aset_light_towards(&towards, tracer->scene, tracer->scene->lights + i, s.hit.point) &&
             vec_dot(s.normal, towards.direction) > 0) {
-            rays_add(shadow, shade_start(&s, towards.direction), towards.direction, towards.distance);
+            rays_add(shadow, aset_shade_start(&s, towards.direction), towards.direction, towards.distance);
         }
     }
 }
@@ -257,17 +258,17 @@ static void add_shadow_rays(rays *shadow, const aset_tracer *tracer, const query
 static void add_picture(rays *eye, rays *shadow, const aset_tracer *tracer) {
     aset_statistics ignored = {0};
     camera c;
-    if (!tracer->scene->has_view || camera_make(&c, &tracer->scene->view, PICTURE, PICTURE) != ASET_OK) {
+    if (!tracer->scene->has_view || aset_camera_make(&c, &tracer->scene->view, PICTURE, PICTURE) != ASET_OK) {
         return;
     }
     for (int row = 0; row < PICTURE; row++) {
         for (int column = 0; column < PICTURE; column++) {
             aset_vec3 origin, direction;
             query_hit hit;
-            camera_ray(&c, R(2) * ((aset_real)column + R(0.5)) / PICTURE - 1,
-                       R(2) * ((aset_real)row + R(0.5)) / PICTURE - 1, &origin, &direction);
+            aset_camera_ray(&c, R(2) * ((aset_real)column + R(0.5)) / PICTURE - 1,
+                            R(2) * ((aset_real)row + R(0.5)) / PICTURE - 1, &origin, &direction);
             rays_add(eye, origin, direction, REAL_INFINITY);
-            if (query_closest(&hit, tracer, origin, direction, REAL_INFINITY, false, &ignored)) {
+            if (aset_query_closest(&hit, tracer, origin, direction, REAL_INFINITY, false, &ignored)) {
                 add_shadow_rays(shadow, tracer, &hit, direction);
             }
         }
@@ -294,9 +295,9 @@ static void add_random(rays *r, const aset_scene *scene) {
             at[a] = from + span * (aset_real)(1.5 * random_below_1(&state) - 0.25);
             to[a] = (aset_real)(2 * random_below_1(&state) - 1);
         }
-        aset_real length = vec_length(vec(to[0], to[1], to[2]));
+        aset_real length = aset_vec_length(vec(to[0], to[1], to[2]));
         if (length <= 1 && length > R(0.01)) {
-            rays_add(r, vec(at[0], at[1], at[2]), vec_unit(vec(to[0], to[1], to[2])), REAL_INFINITY);
+            rays_add(r, vec(at[0], at[1], at[2]), aset_vec_unit(vec(to[0], to[1], to[2])), REAL_INFINITY);
         }
     }
 }
@@ -369,8 +370,8 @@ static void stage_close(stage *s) {
 /* Does the ray hit this object within its bounds? */
 static bool really_hits(const aset_tracer *tracer, const aset_ray *r, uint32_t object) {
     probe ray;
-    aset_real end = r->t_max - approach_ready(&ray, tracer->scene, r->origin, r->direction);
-    return object_nearest(tracer->scene, object, &ray, end) < end;
+    aset_real end = r->t_max - aset_approach_ready(&ray, tracer->scene, r->origin, r->direction);
+    return aset_object_nearest(tracer->scene, object, &ray, end) < end;
 }
 
 /*

@@ -73,8 +73,8 @@ without() { # program, what it must have, what it must not
     # shellcheck disable=SC2086
     [ -z "$alien" ] || { echo "link: a program for $1 links" $alien; bad=1; }
 }
-without draft draft_answers 'exact_|visit_exact|aset_(space|summary|brute|set|mset|grid|octree|arts|excell|baker)|sides_|cells_|slices_|summary_|texture_|baker_|sheet_'
-without exact exact_answers 'draft_|aset_(draft|baker|summary)|facet_|summary_|texture_|baker_|sheet_'
+without draft aset_draft_answers 'exact_|visit_exact|aset_(space|summary|brute|set|mset|grid|octree|arts|excell|baker)|sides_|cells_|slices_|summary_|texture_|baker_|sheet_'
+without exact aset_exact_answers 'draft_|aset_(draft|baker|summary)|facet_|summary_|texture_|baker_|sheet_'
 
 other=64
 case "$build" in *double*) other=32 ;; esac

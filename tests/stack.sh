@@ -45,12 +45,12 @@ sed -n 's/^[a-z].*[ *]\(aset_[a-z0-9_]*\)(.*/\1/p' include/aset/*.h | sort -u >"
 cat >"$dir/pointers" <<'END'
 query_(closest|any) _go$
 _go$ query\.c:visit_
-summary\.c:pass _each_cell$|leaves_each$
-_each_cell$|cells_each|leaves_each summary\.c:look_at_cell
+summary\.c:pass _each_cell$|aset_leaves_each$
+_each_cell$|aset_cells_each|aset_leaves_each summary\.c:look_at_cell
 each_block cells\.c:(mark_|count_references|place_)
 halve (excell|tree)(\.c:excell)?_(inner|leaf)$|tree\.c:tree_(inner|leaf)
 space\.c:measure_with|aset_space_build (brute|set|mset|grid|octree|arts|excell|sides|tree)(\.c:[a-z]+)?_(measure|build)$
-baker\.c:take_|draft_read_stage (scene\.c:take_|counter\.c:count_)
+baker\.c:take_|aset_draft_read_stage (scene\.c:take_|counter\.c:count_)
 aset_sink_polygon|stage\.c:|aset_stage_emit|aset_model_|nff\.c:|aset_load_nff (scene\.c:take_|counter\.c:count_|baker\.c:take_ENTITY$)
 END
 sed -i 's/ENTITY/(background|view|light|material|polygon_begin|polygon_point|polygon_end|sphere|cone)/' "$dir/pointers"

@@ -165,7 +165,7 @@ static aset_status open_copy(opened *o) {
 }
 
 static void seal(opened *o) {
-    o->words[WORD_CHECK] = draft_checksum(o->words, o->n_words);
+    o->words[WORD_CHECK] = aset_draft_checksum(o->words, o->n_words);
 }
 
 static void test_draft__opened_words_give_the_same_pictures(void **state) {
@@ -475,10 +475,10 @@ static void test_draft__layers_are_in_order_and_cover_once(void **state) {
             draft_layer layers[DRAFT_LAYERS_MAX];
             draft_counts counts;
             aset_vec3 from = random_in_cube(&r, 8), to = random_in_cube(&r, 4);
-            aset_vec3 direction = vec_unit(vec_sub(to, from));
+            aset_vec3 direction = aset_vec_unit(vec_sub(to, from));
             aset_real t_max = k % 3 == 0 ? (aset_real)random_between(&r, 0, 12) : REAL_INFINITY, before = 0, sum = 0;
             draft_mode mode = k % 5 == 0 ? DRAFT_SIDE : DRAFT_PLANE;
-            uint32_t n = draft_layers(layers, &d.draft, mode, from, direction, t_max, &counts);
+            uint32_t n = aset_draft_layers(layers, &d.draft, mode, from, direction, t_max, &counts);
             assert_true(n <= DRAFT_LAYERS_MAX);
             for (uint32_t l = 0; l < n; l++) {
                 check(layers[l].t >= before && layers[l].t > 0 && layers[l].t < t_max, SEED ", ray %d", r.seed, k);

@@ -244,7 +244,7 @@ static leaf bucket_at(const aset_space *space, const int32_t v[3]) {
 }
 
 static leaf leaf_at(const aset_space *space, const int32_t v[3]) {
-    return space->method == &aset_excell ? bucket_at(space, v) : tree_find(space, v);
+    return space->method == &aset_excell ? bucket_at(space, v) : aset_tree_find(space, v);
 }
 
 static void layout_add(layout *l, uint32_t cell, const voxel_box *region, uint32_t face) {
@@ -366,8 +366,8 @@ static void course_take(course *c, const layout *l, const probe *ray, uint8_t *t
     c->n = 0;
     c->voxels = c->leaves = 0;
     c->touched = touched;
-    c->inside = dda_inside(&way, slices, ray);
-    if (!c->inside && !dda_enter(&way, slices, ray, &whole)) {
+    c->inside = aset_dda_inside(&way, slices, ray);
+    if (!c->inside && !aset_dda_enter(&way, slices, ray, &whole)) {
         return;
     }
     course_voxel(c, l, &way, NULL);
@@ -410,7 +410,7 @@ typedef struct close_inspection {
 static bool well_placed(const match *m, const aset_ray *ray, const walk_cell *cell) {
     const aset_slices *slices = &m->duel.other.space->slices;
     const voxel_box *region = m->layout.region + cell->index;
-    probe p = probe_make(ray->origin, ray->direction);
+    probe p = aset_probe_make(ray->origin, ray->direction);
     int a = cell->face / 2;
     bool down = (cell->face & 1) != 0;
     aset_real plane = slices_plane(slices, a, down ? region->high[a] + 1 : region->low[a]);
@@ -500,7 +500,7 @@ static void inspect_approximate(match *m, const aset_ray *ray, ray_sort sort) {
     const aset_space *space = d->other.space;
     const course *c = &m->course;
     listing_walk l;
-    probe p = probe_make(ray->origin, ray->direction);
+    probe p = aset_probe_make(ray->origin, ray->direction);
     for (uint32_t stop_after = 0; stop_after <= 1; stop_after++) {
         l.n = 0;
         l.stop_after = stop_after;
@@ -537,7 +537,7 @@ static void run_match(match *m, const stage *s, const aset_space *brute, const a
         compare_queries(d, &ray, sort);
         if (i % 3 == 0) {
             ray = brought_near(&s->scene, &ray);
-            probe p = probe_make(ray.origin, ray.direction);
+            probe p = aset_probe_make(ray.origin, ray.direction);
             memset(m->touched, 0, s->scene.counts.objects);
             course_take(&m->course, &m->layout, &p, m->touched);
             inspect_exact(m, &ray, sort);
@@ -1411,7 +1411,7 @@ static void test_methods__rays_from_the_end_of_the_numbers(void **state) {
                 set_axis(&ray.direction, (i + 1) % 3, i < 6 ? 0 : REAL_LEAST / 16); /* which moves it nowhere */
                 check(same_closest(&a, &b, &ray, &found), "%s, " SEED ", from %g", families[f].name, r.seed, (double)away);
                 probe moved;
-                (void)approach_ready(&moved, &s.scene, ray.origin, vec_unit(ray.direction));
+                (void)aset_approach_ready(&moved, &s.scene, ray.origin, aset_vec_unit(ray.direction));
                 check(real_abs(moved.origin[i % 3]) < 8, "from %g moved to %g", (double)away, (double)moved.origin[i % 3]);
                 hits += found;
                 rays++;
@@ -1529,7 +1529,7 @@ static void check_summary(stage *s, const aset_space *space, random_state *r, co
                   "%s, " SEED ", ray %d", name, r->seed, i);
         }
         if (i % 2 == 1) { /* no ray from inside is moved: the plain way's first cell */
-            probe p = probe_make(ray.origin, dvec_real(dvec_unit(dvec_of(ray.direction))));
+            probe p = aset_probe_make(ray.origin, dvec_real(dvec_unit(dvec_of(ray.direction))));
             course_take(&c, &l, &p, NULL);
             check(found == (c.n > 0) && (!found || hit.cell == c.list[0].cell), "%s, " SEED ", ray %d", name, r->seed, i);
             aset_real towards = c.n > 0 && (c.list[0].face & 1) != 0 ? R(1) : R(-1);
@@ -1611,7 +1611,7 @@ static void test_methods__set_boxes_fit_their_slices(void **state) {
             assert_int_equal(space.slices.n[a], extents_of(&s.scene, a) + 1);
         }
         for (uint32_t k = 0; k < s.scene.counts.objects; k++) {
-            voxel_box box = object_voxels(&space, k), own = slices_object_box(&space.slices, &s.scene, k);
+            voxel_box box = object_voxels(&space, k), own = aset_slices_object_box(&space.slices, &s.scene, k);
             aset_vec3 low, high;
             aset_object_bounds(&s.scene, k, &low, &high);
             assert_memory_equal(&box, &own, sizeof box);
@@ -1658,7 +1658,7 @@ static void test_methods__set_cap_merges_extents(void **state) {
               space.structure.merged, without);
         assert_true((space.structure.merged > 0) == (cap < 41));
         for (uint32_t k = 0; k < s.scene.counts.objects; k++) {
-            voxel_box box = slices_object_box(&space.slices, &s.scene, k);
+            voxel_box box = aset_slices_object_box(&space.slices, &s.scene, k);
             aset_vec3 low, high;
             aset_object_bounds(&s.scene, k, &low, &high);
             for (int a = 0; a < 3; a++) {

@@ -43,19 +43,20 @@ static void bounce(tally *sum, const aset_tracer *tracer, random_state *r, dvec 
     if (!(dvec_length(way) > 0)) {
         return;
     }
-    aset_vec3 direction = vec_unit(dvec_real(dvec_unit(way)));
-    if (!query_closest(&hit, tracer, origin, direction, REAL_INFINITY, false, &statistics)) {
+    aset_vec3 direction = aset_vec_unit(dvec_real(dvec_unit(way)));
+    if (!aset_query_closest(&hit, tracer, origin, direction, REAL_INFINITY, false, &statistics)) {
         return;
     }
-    shading_make(&s, tracer, &hit, direction);
+    aset_shading_make(&s, tracer, &hit, direction);
     dvec n = dvec_of(s.hit.geometric), out = random_grazing(r, n);
     out = outwards && dvec_dot(out, n) < 0 ? dvec_make(-out.x, -out.y, -out.z) : out;
-    aset_vec3 leaving = vec_unit(dvec_real(dvec_unit(out)));
+    aset_vec3 leaving = aset_vec_unit(dvec_real(dvec_unit(out)));
     if (outwards && !(vec_dot(leaving, s.hit.geometric) > 0)) {
         return; /* rounding turned it inwards */
     }
     sum->left++;
-    sum->again += query_any(tracer, shade_start(&s, leaving), leaving, REAL_INFINITY, false, REAL_INFINITY, &statistics);
+    sum->again +=
+        aset_query_any(tracer, aset_shade_start(&s, leaving), leaving, REAL_INFINITY, false, REAL_INFINITY, &statistics);
 }
 
 static void report(const char *what, const tally *sum, uint64_t seed) {

@@ -62,7 +62,7 @@ static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *sce
         target.z += span.z * random_between(r, 0, 1);
         aim_at(ray, target);
         if (move_to_hit(ray, scene, object)) {
-            object_normals(scene, object, ray->origin, &shading, &normal);
+            aset_object_normals(scene, object, ray->origin, &shading, &normal);
             break;
         }
     }
@@ -634,12 +634,12 @@ static void test_space__slices_are_located_exactly(void **state) {
 #else
             aset_real below = nextafter(plane, -REAL_INFINITY), above = nextafter(plane, REAL_INFINITY);
 #endif
-            check(slices_locate(&space.slices, 0, plane) == k, SEED ", slice %d of %" PRIu32, r.seed, (int)k, n);
-            check(slices_locate(&space.slices, 0, below) == k - 1, SEED ", slice %d of %" PRIu32, r.seed, (int)k, n);
-            check(slices_locate(&space.slices, 0, above) == k, SEED ", slice %d of %" PRIu32, r.seed, (int)k, n);
+            check(aset_slices_locate(&space.slices, 0, plane) == k, SEED ", slice %d of %" PRIu32, r.seed, (int)k, n);
+            check(aset_slices_locate(&space.slices, 0, below) == k - 1, SEED ", slice %d of %" PRIu32, r.seed, (int)k, n);
+            check(aset_slices_locate(&space.slices, 0, above) == k, SEED ", slice %d of %" PRIu32, r.seed, (int)k, n);
         }
-        check(slices_locate(&space.slices, 0, R(-1e30)) == 0, SEED, r.seed);
-        check(slices_locate(&space.slices, 0, R(1e30)) == (int32_t)n - 1, SEED, r.seed);
+        check(aset_slices_locate(&space.slices, 0, R(-1e30)) == 0, SEED, r.seed);
+        check(aset_slices_locate(&space.slices, 0, R(1e30)) == (int32_t)n - 1, SEED, r.seed);
         stage_close(&s);
         model_free(&m);
     }

@@ -17,7 +17,7 @@ for method in set mset grid octree arts excell; do
     valgrind --tool=callgrind --callgrind-out-file="$dir/callgrind" "$aset" render "$dir/tetra.nff" -s 100x100 --grid 64 \
         -m $method --stats "$dir/stats.json" --quiet 2> /dev/null
     callgrind_annotate --inclusive=yes "$dir/callgrind" > "$dir/annotated"
-    case $method in set | mset) go=sides_go ;; grid) go=grid_go ;; *) go=leaves_go ;; esac
+    case $method in set | mset) go=aset_sides_go ;; grid) go=grid_go ;; *) go=aset_leaves_go ;; esac
     rays=$(($(first primary) + $(first shadow)))
     walk=$(($(inclusive $go) - $(inclusive visit_exact)))
     refs=$(first references)

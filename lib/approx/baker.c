@@ -32,7 +32,7 @@ static void fit(aset_baker *b, aset_vec3 low, aset_vec3 high) {
     if (is_first) {
         b->only = b->material;
         b->n_materials = 1;
-    } else if (b->n_materials < 2 && b->is_other && !texture_equal(&b->only, &b->material)) {
+    } else if (b->n_materials < 2 && b->is_other && !aset_texture_equal(&b->only, &b->material)) {
         b->n_materials = 2;
     }
     b->is_other = false;
@@ -68,7 +68,7 @@ static void take_polygon(aset_baker *b, uint32_t n) {
     if (b->phase == PHASE_FIT) {
         fit(b, low, high);
     } else if (b->phase == PHASE_BAKE) {
-        sheet_polygon(b, b->points, n, b->crossings);
+        aset_sheet_polygon(b, b->points, n, b->crossings);
     }
 }
 #endif
@@ -98,7 +98,7 @@ static aset_status take_material(void *context, const aset_material *material) {
     }
     texture_sum sum;
     memset(&sum, 0, sizeof sum);
-    texture_sum_add(&sum, material);
+    aset_texture_sum_add(&sum, material);
     memcpy(b->parts, sum.parts, sizeof b->parts);
     b->material = *material;
     b->has_material = b->is_other = true;
@@ -114,7 +114,7 @@ static aset_status check_material(const aset_baker *b) {
 #if ASET_WITH_POLYGONS
 static aset_status take_polygon_begin(void *context, uint32_t n_points, bool with_normals) {
     aset_baker *b = context;
-    aset_status status = outline_begin(&b->counter.outline, n_points, with_normals);
+    aset_status status = aset_outline_begin(&b->counter.outline, n_points, with_normals);
     if (status == ASET_OK) {
         status = check_material(b);
     }
@@ -128,7 +128,7 @@ static aset_status take_polygon_begin(void *context, uint32_t n_points, bool wit
 static aset_status take_polygon_point(void *context, const aset_vec3 *point, const aset_vec3 *normal) {
     aset_baker *b = context;
     uint32_t index = b->counter.outline.n_given;
-    aset_status status = outline_point(&b->counter.outline, point, normal);
+    aset_status status = aset_outline_point(&b->counter.outline, point, normal);
     if (status == ASET_OK && b->points != NULL) {
         b->points[3 * index] = point->x;
         b->points[3 * index + 1] = point->y;
@@ -151,7 +151,7 @@ static aset_status take_polygon_end(void *context) {
     aset_baker *b = context;
     aset_outline *outline = &b->counter.outline;
     uint32_t n = outline->n_announced;
-    aset_status status = outline_end(outline);
+    aset_status status = aset_outline_end(outline);
     status = status == ASET_OK ? check_box(outline->low, outline->high) : status;
     if (status != ASET_OK) {
         return status;
@@ -244,7 +244,7 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
         return status != ASET_OK ? status : measure_triangles(baker, coordinates, n);
     }
     if (baker->n_kept == 0) {
-        sheet_triangles(baker, coordinates, n);
+        aset_sheet_triangles(baker, coordinates, n);
         return ASET_OK;
     }
     for (size_t i = 0; i < n && status == ASET_OK; i++, coordinates += 9) {
@@ -253,7 +253,7 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
         if (is_kept(baker, low, high, 3)) {
             status = take_triangle(baker, coordinates);
         } else {
-            sheet_triangle(baker, coordinates);
+            aset_sheet_triangle(baker, coordinates);
         }
     }
     return status;
@@ -263,14 +263,14 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
 #if ASET_WITH_SPHERES
 static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real radius) {
     aset_baker *b = context;
-    aset_status status = entity_check_sphere(centre, radius);
+    aset_status status = aset_entity_check_sphere(centre, radius);
     status = status == ASET_OK ? check_material(b) : status;
     if (status != ASET_OK) {
         return status;
     }
     aset_vec3 low, high;
     aset_real at[ASET_COORDINATES_SPHERE] = {centre->x, centre->y, centre->z, radius};
-    sphere_bounds(at, &low, &high);
+    aset_sphere_bounds(at, &low, &high);
     status = check_box(low, high);
     if (status != ASET_OK) {
         return status;
@@ -282,7 +282,7 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
     } else if (b->phase == PHASE_FIT) {
         fit(b, low, high);
     } else {
-        sheet_sphere(b, *centre, radius);
+        aset_sheet_sphere(b, *centre, radius);
     }
     return ASET_OK;
 }
@@ -292,14 +292,14 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
 static aset_status take_cone(void *context, const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
                              aset_real apex_radius) {
     aset_baker *b = context;
-    aset_status status = entity_check_cone(base, base_radius, apex, apex_radius);
+    aset_status status = aset_entity_check_cone(base, base_radius, apex, apex_radius);
     status = status == ASET_OK ? check_material(b) : status;
     if (status != ASET_OK) {
         return status;
     }
     aset_vec3 low, high;
     aset_real at[ASET_COORDINATES_CONE] = {base->x, base->y, base->z, base_radius, apex->x, apex->y, apex->z, apex_radius};
-    cone_bounds(at, &low, &high);
+    aset_cone_bounds(at, &low, &high);
     status = check_box(low, high);
     if (status != ASET_OK) {
         return status;
@@ -311,7 +311,7 @@ static aset_status take_cone(void *context, const aset_vec3 *base, aset_real bas
     } else if (b->phase == PHASE_FIT) {
         fit(b, low, high);
     } else {
-        sheet_cone(b, *base, base_radius, *apex, apex_radius);
+        aset_sheet_cone(b, *base, base_radius, *apex, apex_radius);
     }
     return ASET_OK;
 }

@@ -65,19 +65,19 @@ static inline uint32_t baker_block_at(const aset_baker *b, uint32_t x, uint32_t 
     return ((z / 4) * b->blocks[1] + y / 4) * b->blocks[0] + x / 4;
 }
 
-void bins_clear(aset_baker *b);
+void aset_bins_clear(aset_baker *b);
 
 /* The bin of a key, made if there is none; NULL: it lies above the ceiling by now, or there is no room at all. */
-bin *bins_find(aset_baker *b, uint32_t key);
+bin *aset_bins_find(aset_baker *b, uint32_t key);
 
 /* The bins of the blocks baked in this pass become raw facets, or are only counted if baker->counting. */
-void baker_harvest(aset_baker *baker);
+void aset_baker_harvest(aset_baker *baker);
 
 /* Makes the words at the region's start from all raw facets. ASET_ERR_NOMEM: the region has no room for both. */
-aset_status baker_write(aset_baker *baker);
+aset_status aset_baker_write(aset_baker *baker);
 
 /* The bytes of a draft that is all in raw facets, and of the work to write it; with baker->n_counted facets if that is more. */
-size_t baker_words_bound(const aset_baker *baker, uint64_t n_facets);
+size_t aset_baker_words_bound(const aset_baker *baker, uint64_t n_facets);
 
 #endif
 #endif

@@ -106,7 +106,7 @@ static bool start_pass(aset_baker *b) {
     b->capacity--; /* for the rounding of the keys */
     b->keys = (uint32_t *)(void *)b->after;
     b->bins = b->after + ASET_ROUND(b->capacity * sizeof *b->keys);
-    bins_clear(b);
+    aset_bins_clear(b);
     if (b->floor_block == 0) {
         b->report.unseen = 0;
     }
@@ -237,15 +237,15 @@ static aset_status end_baking(aset_baker *b) {
     if (b->failure != ASET_OK) {
         return b->failure;
     }
-    baker_harvest(b);
+    aset_baker_harvest(b);
     b->floor_block = b->ceiling_block;
     b->stage_sink = aset_counter_sink(&b->counter); /* the stage has its entities: further ones go nowhere */
     if (b->floor_block == baker_blocks(b)) {
-        size_t work = baker_words_bound(b, b->n_counted), bins = need_at_most(b);
+        size_t work = aset_baker_words_bound(b, b->n_counted), bins = need_at_most(b);
         if (b->counting) {
             return bake_again(b, work > bins ? work : bins);
         }
-        if (baker_write(b) != ASET_OK) {
+        if (aset_baker_write(b) != ASET_OK) {
             return bake_again(b, work);
         }
         b->phase = PHASE_DONE;

@@ -9,7 +9,7 @@
 
 #if ASET_WITH_DRAFTS
 
-void bins_clear(aset_baker *b) {
+void aset_bins_clear(aset_baker *b) {
     memset(b->keys, 0xff, b->capacity * sizeof *b->keys); /* BIN_EMPTY */
     b->n_bins = 0;
 }
@@ -93,7 +93,7 @@ static bool lower_ceiling(aset_baker *b) {
     return true;
 }
 
-bin *bins_find(aset_baker *b, uint32_t key) {
+bin *aset_bins_find(aset_baker *b, uint32_t key) {
     uint32_t slot = baker_slot(b, key);
     if (b->keys[slot] == key) {
         return baker_bin(b, slot);

@@ -22,12 +22,12 @@ static unsigned index_width(uint32_t n) {
     return n > 1 ? bits_width(n - 1) : 1;
 }
 
-bool draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words) {
+bool aset_draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words) {
     const uint32_t *at = words + WORDS_HEADER, *end = words + n_words;
     uint64_t all = 1;
     bool fits = true;
     draft->words = words;
-    draft->answers = &draft_answers;
+    draft->answers = &aset_draft_answers;
     draft->n_words = n_words;
     draft->column = 0;
     for (int a = 0; a < 3; a++) {
@@ -61,7 +61,7 @@ bool draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words) {
     return fits && at == end;
 }
 
-uint32_t draft_checksum(const uint32_t *words, size_t n_words) {
+uint32_t aset_draft_checksum(const uint32_t *words, size_t n_words) {
     uint32_t sum = 2166136261u; /* Fowler, Noll and Vo's, over words, with a shift so that high bits come down */
     for (size_t i = WORD_CHECK + 1; i < n_words; i++) {
         sum = (sum ^ words[i]) * 16777619u;
@@ -88,7 +88,7 @@ static const char *check_header(const uint32_t *words, size_t n_words) {
     if (words[WORD_N_WORDS] != n_words) {
         return "a draft of another length than it says";
     }
-    if (words[WORD_CHECK] != draft_checksum(words, n_words)) {
+    if (words[WORD_CHECK] != aset_draft_checksum(words, n_words)) {
         return "a damaged draft: its check sum is wrong";
     }
     for (int a = 0; a < 3; a++) {
@@ -184,13 +184,13 @@ static aset_material read_material(const uint32_t *w) {
     return m;
 }
 
-aset_material draft_material(const aset_draft *draft, uint32_t texture) {
+aset_material aset_draft_material(const aset_draft *draft, uint32_t texture) {
     return read_material(draft->textures + (size_t)texture * TEXTURE_WORDS);
 }
 
 aset_material aset_draft_texture(const aset_draft *draft, uint32_t number) {
     facet f = facet_read(draft, number);
-    return draft_material(draft, f.texture);
+    return aset_draft_material(draft, f.texture);
 }
 
 static aset_status read_view(const uint32_t *words, const aset_sink *sink) {
@@ -285,7 +285,7 @@ static aset_status read_kept(const uint32_t *w, uint32_t left, uint32_t *n, cons
 
 #endif
 
-aset_status draft_read_stage(const aset_draft *draft, const aset_sink *sink) {
+aset_status aset_draft_read_stage(const aset_draft *draft, const aset_sink *sink) {
     const uint32_t *words = draft->words, *w = draft->textures + (size_t)draft->n_textures * TEXTURE_WORDS;
     uint32_t left = words[WORD_KEPT_WORDS];
     aset_status status = read_view(words, sink);
@@ -306,7 +306,7 @@ static aset_status count_stage(aset_counts *counts, const aset_draft *draft) {
 #if ASET_WITH_OBJECTS
     aset_counter counter;
     aset_sink sink = aset_counter_sink(&counter);
-    aset_status status = draft_read_stage(draft, &sink);
+    aset_status status = aset_draft_read_stage(draft, &sink);
     *counts = counter.counts;
     return status;
 #else /* lights are all there is: the counter need not be linked */
@@ -325,7 +325,7 @@ static aset_status make_stage(aset_draft *draft, aset_arena *arena) {
     }
     if (status == ASET_OK) {
         aset_sink sink = aset_scene_sink(&draft->stage);
-        status = draft_read_stage(draft, &sink);
+        status = aset_draft_read_stage(draft, &sink);
     }
     return status;
 }
@@ -343,7 +343,7 @@ aset_status aset_draft_open(aset_draft *draft, const uint32_t *words, size_t n_w
         return ASET_ERR_ARGUMENT;
     }
     const char *wrong = check_header(words, n_words);
-    if (wrong == NULL && !draft_bind(&opened, words, n_words)) {
+    if (wrong == NULL && !aset_draft_bind(&opened, words, n_words)) {
         wrong = "a draft whose parts do not fill its length";
     }
     wrong = wrong != NULL ? wrong : check_blocks(&opened);

@@ -22,8 +22,8 @@ static void set_axis(draft_beam *b, int a, int i, aset_real origin, aset_real di
     b->inverse[a][i] = inverse < REAL_MAX ? inverse : REAL_MAX;
 }
 
-void draft_beam_start(draft_beam *beam, const aset_draft *draft, const aset_vec3 *origins, const aset_vec3 *directions,
-                      const aset_real *t_max, uint32_t n) {
+void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, const aset_vec3 *origins, const aset_vec3 *directions,
+                           const aset_real *t_max, uint32_t n) {
     beam->draft = draft;
     beam->n_visited = 0;
     EACH(i) {
@@ -92,7 +92,7 @@ static int32_t meet_plane(meetings *restrict m, const draft_beam *restrict b, co
     return n;
 }
 
-bool draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k) {
+bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k) {
     int32_t through[DRAFT_BEAM];
     draft_meeting found[DRAFT_BEAM][DRAFT_FACETS_MAX];
     uint32_t n_found[DRAFT_BEAM] = {0}, first, end;
@@ -126,7 +126,7 @@ bool draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, un
     bool done = true;
     EACH(i) {
         if (n_found[i] > 0) {
-            (void)draft_cover_add(&beam->cover[i], found[i], n_found[i]);
+            (void)aset_draft_cover_add(&beam->cover[i], found[i], n_found[i]);
             beam->left[i] = beam->cover[i].left;
             beam->end[i] = draft_cover_end(&beam->cover[i]);
         }

@@ -23,14 +23,14 @@ typedef struct draft_beam {
 } draft_beam;
 
 /* Up to DRAFT_BEAM rays of unit direction, which meet facets at 0 < t < t_max. */
-void draft_beam_start(draft_beam *beam, const aset_draft *draft, const aset_vec3 *origins, const aset_vec3 *directions,
-                      const aset_real *t_max, uint32_t n);
+void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, const aset_vec3 *origins, const aset_vec3 *directions,
+                           const aset_real *t_max, uint32_t n);
 
 /*
  * Lays on the rays what they meet in voxel number k (by its bit) of a block that is not empty: number dense, the at[0]-th on x and so
  * on. Voxels must come in an order in which every ray passes those that it meets. True: all rays are done.
  */
-bool draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k);
+bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k);
 
 #endif
 #endif

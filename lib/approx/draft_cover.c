@@ -16,7 +16,7 @@ static void add_layer(draft_cover *c, const draft_meeting *m) {
     }
 }
 
-bool draft_cover_add(draft_cover *c, const draft_meeting *found, uint32_t n) {
+bool aset_draft_cover_add(draft_cover *c, const draft_meeting *found, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
         if (c->n > 0 && found[i].away) { /* the surface's inside: the ray came through a seam, not past an edge */
             c->layers[c->n - 1].cover += c->left;

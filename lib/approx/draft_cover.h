@@ -75,7 +75,7 @@ static inline void draft_meeting_insert(draft_meeting *found, uint32_t n, const 
 }
 
 /* Lays what a voxel's facets gave, nearest first, behind what is there. True: nothing behind matters any more. */
-bool draft_cover_add(draft_cover *c, const draft_meeting *found, uint32_t n);
+bool aset_draft_cover_add(draft_cover *c, const draft_meeting *found, uint32_t n);
 
 #endif
 #endif

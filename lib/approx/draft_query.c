@@ -13,8 +13,8 @@ static draft_mode mode_of(const aset_tracer *tracer) {
 
 #if ASET_WITH_OBJECTS
 
-aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                           aset_statistics *statistics) {
+aset_real aset_draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction,
+                                aset_real t_max, aset_statistics *statistics) {
     const aset_scene *stage = &draft->stage;
     probe ray;
     if (stage->counts.objects == 0) {
@@ -22,9 +22,9 @@ aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 or
     }
     aset_real best = t_max * stage->scale;
     bool found = false;
-    aset_real moved = approach_ready(&ray, stage, origin, direction);
+    aset_real moved = aset_approach_ready(&ray, stage, origin, direction);
     for (uint32_t i = 0; i < stage->counts.objects; i++) {
-        aset_real t = object_nearest(stage, i, &ray, best - moved);
+        aset_real t = aset_object_nearest(stage, i, &ray, best - moved);
         statistics->tests++;
         if (t + moved < best) {
             statistics->test_hits++;
@@ -37,7 +37,7 @@ aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 or
     hit->near = probe_origin(&ray);
     hit->t = best;
     hit->scene = stage;
-    hit->by = &draft_answers;
+    hit->by = &aset_draft_answers;
     hit->cell = 0;
     hit->curtailed = false;
     if (!found) {
@@ -48,15 +48,16 @@ aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 or
 }
 
 static void kept_surface(aset_hit *surface, const query_hit *hit) {
-    object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal, &surface->geometric);
+    aset_object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal,
+                        &surface->geometric);
     surface->material = shape_of(hit->scene, hit->object).material;
 }
 
 #else
 
 /* aset_draft_open refuses a draft that keeps objects. */
-aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                           aset_statistics *statistics) {
+aset_real aset_draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction,
+                                aset_real t_max, aset_statistics *statistics) {
     (void)hit, (void)draft, (void)origin, (void)direction, (void)statistics;
     return t_max;
 }
@@ -67,8 +68,8 @@ static void kept_surface(aset_hit *surface, const query_hit *hit) {
 
 #endif
 
-uint32_t draft_query_layers(query_hit *hits, const draft_layer *met, uint32_t n, aset_vec3 origin, const query_hit *kept,
-                            bool has_kept) {
+uint32_t aset_draft_query_layers(query_hit *hits, const draft_layer *met, uint32_t n, aset_vec3 origin,
+                                 const query_hit *kept, bool has_kept) {
     aset_real left = 1;
     for (uint32_t i = 0; i < n; i++) {
         query_hit *hit = hits + i;
@@ -80,7 +81,7 @@ uint32_t draft_query_layers(query_hit *hits, const draft_layer *met, uint32_t n,
         hit->curtailed = false;
         hit->cover = met[i].cover;
         hit->scene = NULL;
-        hit->by = &draft_answers;
+        hit->by = &aset_draft_answers;
         left -= met[i].cover;
     }
     if (has_kept && left > 0) {
@@ -95,22 +96,22 @@ static uint32_t draft_meet(query_hit *layers, const aset_tracer *tracer, aset_ve
     draft_layer met[DRAFT_LAYERS_MAX];
     draft_counts counts;
     query_hit kept;
-    aset_real end = draft_query_kept(&kept, tracer->draft, origin, direction, t_max, statistics);
-    uint32_t n = draft_layers(met, tracer->draft, mode_of(tracer), origin, direction, end, &counts);
+    aset_real end = aset_draft_query_kept(&kept, tracer->draft, origin, direction, t_max, statistics);
+    uint32_t n = aset_draft_layers(met, tracer->draft, mode_of(tracer), origin, direction, end, &counts);
     statistics->cells_visited += counts.cells;
     statistics->nonempty_visited += counts.nonempty;
     statistics->approx_hits += n > 0;
-    return draft_query_layers(layers, met, n, origin, &kept, end < t_max);
+    return aset_draft_query_layers(layers, met, n, origin, &kept, end < t_max);
 }
 
 static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, aset_real t_last,
                       aset_statistics *statistics) {
     draft_counts counts;
     query_hit kept;
-    if (draft_query_kept(&kept, tracer->draft, origin, direction, t_max, statistics) < t_max) {
+    if (aset_draft_query_kept(&kept, tracer->draft, origin, direction, t_max, statistics) < t_max) {
         return true;
     }
-    bool blocked = draft_blocks(tracer->draft, mode_of(tracer), origin, direction, t_max, t_last, &counts);
+    bool blocked = aset_draft_blocks(tracer->draft, mode_of(tracer), origin, direction, t_max, t_last, &counts);
     statistics->cells_visited += counts.cells;
     statistics->nonempty_visited += counts.nonempty;
     statistics->approx_hits += blocked;
@@ -126,14 +127,14 @@ static void draft_surface(aset_hit *surface, aset_material *own, const aset_trac
     surface->cell = hit->cell;
     surface->normal = facet_normal(tracer->draft, &f);
     surface->geometric = tracer->draft_sides ? answers_slice_normal(hit->face) : surface->normal;
-    *own = draft_material(tracer->draft, f.texture);
+    *own = aset_draft_material(tracer->draft, f.texture);
     surface->material = own;
 }
 
 static aset_real clearance(const aset_tracer *tracer) {
-    return draft_clearance(tracer->draft);
+    return aset_draft_clearance(tracer->draft);
 }
 
-const struct aset_answers draft_answers = {true, draft_meet, draft_any, draft_surface, clearance};
+const struct aset_answers aset_draft_answers = {true, draft_meet, draft_any, draft_surface, clearance};
 
 #endif

@@ -8,12 +8,12 @@
 #if ASET_WITH_DRAFTS
 
 /* The t of the nearest of the objects that the draft keeps exact, in *hit; t_max if there is none before it. */
-aset_real draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                           aset_statistics *statistics);
+aset_real aset_draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction,
+                                aset_real t_max, aset_statistics *statistics);
 
 /* The n layers that a ray met, and behind them the kept object if there is one, as hits. How many. */
-uint32_t draft_query_layers(query_hit *hits, const draft_layer *met, uint32_t n, aset_vec3 origin, const query_hit *kept,
-                            bool has_kept);
+uint32_t aset_draft_query_layers(query_hit *hits, const draft_layer *met, uint32_t n, aset_vec3 origin,
+                                 const query_hit *kept, bool has_kept);
 
 #endif
 #endif

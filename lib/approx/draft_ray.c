@@ -34,7 +34,7 @@ typedef struct way {
     draft_counts counts;
 } way;
 
-aset_real draft_clearance(const aset_draft *draft) {
+aset_real aset_draft_clearance(const aset_draft *draft) {
     return CLEARANCE * draft->column;
 }
 
@@ -81,7 +81,7 @@ static bool visit_planes(way *w, const aset_real middle[3], uint32_t first, uint
             return true;
         }
     }
-    return draft_cover_add(&w->cover, found, n);
+    return aset_draft_cover_add(&w->cover, found, n);
 }
 
 /* The voxel itself is the hit, with the facet that faces the ray most. */
@@ -103,7 +103,7 @@ static bool visit_side(way *w, aset_real t, int axis, uint32_t first, uint32_t e
             m.facet = i;
         }
     }
-    draft_cover_add(&w->cover, &m, 1);
+    aset_draft_cover_add(&w->cover, &m, 1);
     w->cover.layers[0].face = axis * 2 + w->turned[axis];
     return true;
 }
@@ -330,8 +330,8 @@ static inline void way_make(way *w, const aset_draft *draft, draft_mode mode, as
     way_set_axis(w, 2, (origin.z - low[2]) * per_size[2], direction.z * per_size[2]);
 }
 
-uint32_t draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
-                      aset_vec3 direction, aset_real t_max, draft_counts *counts) {
+uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
+                           aset_vec3 direction, aset_real t_max, draft_counts *counts) {
     way w;
     way_make(&w, draft, mode, origin, direction, t_max, t_max, layers);
     (void)go(&w);
@@ -342,8 +342,8 @@ uint32_t draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *dr
     return w.cover.n;
 }
 
-bool draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                  aset_real t_last, draft_counts *counts) {
+bool aset_draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                       aset_real t_last, draft_counts *counts) {
     way w;
     way_make(&w, draft, mode, origin, direction, t_max, t_last, NULL);
     bool blocked = go(&w);

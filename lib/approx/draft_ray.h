@@ -30,18 +30,18 @@ typedef enum draft_mode { DRAFT_PLANE, DRAFT_SIDE } draft_mode;
  * The layers that a ray of unit direction meets at 0 < t < t_max, in order; how many. Where the sum of their covers is less than
  * 1 the rest of the ray goes on behind t_max or leaves the box.
  */
-uint32_t draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
-                      aset_vec3 direction, aset_real t_max, draft_counts *counts);
+uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
+                           aset_vec3 direction, aset_real t_max, draft_counts *counts);
 
 /*
  * Whether anything stops a shadow ray: facets that face the origin, and others beyond the origin's own surroundings. No marked
  * voxel lies behind t_last: there the walk ends.
  */
-bool draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                  aset_real t_last, draft_counts *counts);
+bool aset_draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                       aset_real t_last, draft_counts *counts);
 
 /* How far from the surface, along its normal, rays start that are to meet the draft. */
-aset_real draft_clearance(const aset_draft *draft);
+aset_real aset_draft_clearance(const aset_draft *draft);
 
 #endif
 #endif

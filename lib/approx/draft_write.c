@@ -49,16 +49,16 @@ static uint32_t texture_number(aset_baker *b, const bin *it) {
     for (int p = 0; p < TEXTURE_PARTS && is_mixed; p++) {
         sum.parts[p] = coarsen(sum.parts[p], p);
     }
-    aset_material texture = texture_average(&sum);
+    aset_material texture = aset_texture_average(&sum);
     memset(&list, 0, sizeof list);
     list.textures = b->textures;
     list.n_textures = b->n_textures;
-    if (texture_find(&list, &texture, &number)) {
+    if (aset_texture_find(&list, &texture, &number)) {
         return number;
     }
     if (b->n_textures == b->texture_capacity) {
         b->report.merged++;
-        return texture_nearest(&list, &texture);
+        return aset_texture_nearest(&list, &texture);
     }
     b->textures[b->n_textures] = texture;
     return b->n_textures++;
@@ -92,13 +92,13 @@ static void harvest_voxel(aset_baker *b, uint32_t voxel) {
     }
 }
 
-void baker_harvest(aset_baker *b) {
+void aset_baker_harvest(aset_baker *b) {
     uint32_t in_layer = b->blocks[0] * b->blocks[1];
     if (b->single && b->n_materials > 0) {
         texture_sum sum; /* in the same units, and within the same bounds, as those of several materials */
         memset(&sum, 0, sizeof sum);
-        texture_sum_add(&sum, &b->only);
-        b->textures[0] = texture_average(&sum);
+        aset_texture_sum_add(&sum, &b->only);
+        b->textures[0] = aset_texture_average(&sum);
         b->n_textures = 1;
     }
     for (uint32_t block = b->floor_block; block < b->ceiling_block; block++) {
@@ -212,7 +212,7 @@ static uint64_t count_words(const aset_baker *b, uint64_t n_facets, uint64_t n_s
            (uint64_t)b->stage.counts.lights * LIGHT_WORDS + kept;
 }
 
-size_t baker_words_bound(const aset_baker *b, uint64_t n_facets) {
+size_t aset_baker_words_bound(const aset_baker *b, uint64_t n_facets) {
     uint64_t words = count_words(b, n_facets, n_facets, n_facets < 65535 ? n_facets : 65535);
     uint64_t lists = n_facets * sizeof(uint32_t) + (n_facets < 65536 ? n_facets : 65536) * sizeof(uint32_t);
     return (size_t)(b->after - b->region) + (size_t)(words * sizeof(uint32_t) + lists + n_facets * sizeof(uint64_t)) + 65536;
@@ -269,7 +269,7 @@ static void write_header(uint32_t *words, const aset_baker *b, uint64_t n_words,
     }
 }
 
-/* The sections are written through the places that draft_bind has found for them. */
+/* The sections are written through the places that aset_draft_bind has found for them. */
 static uint32_t *section(const uint32_t *at, uint32_t *words, const aset_draft *draft) {
     return words + (at - draft->words);
 }
@@ -422,7 +422,7 @@ static bool collect(number_set *set, const aset_baker *b, bool prints, uint32_t 
     return collect_by_map(set, b, prints, most, at, end) || collect_by_sorting(set, b, prints, at, end);
 }
 
-aset_status baker_write(aset_baker *b) {
+aset_status aset_baker_write(aset_baker *b) {
     aset_draft draft;
     uint32_t *words = (uint32_t *)(void *)b->after, *end = (uint32_t *)(void *)(b->raw - b->n_raw);
     number_set surfaces, prints;
@@ -434,11 +434,11 @@ aset_status baker_write(aset_baker *b) {
         return ASET_ERR_NOMEM;
     }
     write_header(words, b, n_words, surfaces.n, prints.n);
-    (void)draft_bind(&draft, words, (size_t)n_words);
+    (void)aset_draft_bind(&draft, words, (size_t)n_words);
     write_blocks(words, &draft, b);
     write_facets(words, &draft, b, &surfaces, &prints);
     write_stage(words, &draft, b);
-    words[WORD_CHECK] = draft_checksum(words, (size_t)n_words);
+    words[WORD_CHECK] = aset_draft_checksum(words, (size_t)n_words);
     memmove(b->region, words, (size_t)n_words * sizeof *words);
     b->n_words = (size_t)n_words;
     return ASET_OK;
@@ -465,7 +465,7 @@ static aset_status read_again(aset_scene *stage, const aset_draft *draft, const 
     stage->materials = given->materials;
     stage->lights = given->lights;
     aset_sink sink = aset_scene_sink(stage);
-    return draft_read_stage(draft, &sink);
+    return aset_draft_read_stage(draft, &sink);
 }
 
 aset_status aset_baker_finish(aset_draft *draft, aset_baker *baker) {
@@ -473,7 +473,7 @@ aset_status aset_baker_finish(aset_draft *draft, aset_baker *baker) {
         return ASET_ERR_ARGUMENT;
     }
     memset(draft, 0, sizeof *draft);
-    (void)draft_bind(draft, take_words(baker, baker->n_words), baker->n_words);
+    (void)aset_draft_bind(draft, take_words(baker, baker->n_words), baker->n_words);
     baker->phase = PHASE_FAILED;
     aset_status status = read_again(&draft->stage, draft, &baker->stage);
     if (status != ASET_OK) {

@@ -164,7 +164,7 @@ static inline aset_vec3 facet_normal(const aset_draft *draft, const facet *f) {
     n[f->axis] = towards * draft->per_size[f->axis];
     n[u] = -towards * f->slope_u * draft->per_size[u];
     n[v] = -towards * f->slope_v * draft->per_size[v];
-    return vec_unit(vec(n[0], n[1], n[2]));
+    return aset_vec_unit(vec(n[0], n[1], n[2]));
 }
 
 static inline bool starts_bit(const uint32_t *starts, uint32_t facet_number) {
@@ -204,17 +204,17 @@ static inline void draft_find_facets(const aset_draft *draft, uint32_t block, un
 }
 
 /* Sets what follows from the header's words: sizes and where the sections are. True: they end with the last word. */
-bool draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words);
+bool aset_draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words);
 
 /* Gives the stage's entities to a sink. */
-aset_status draft_read_stage(const aset_draft *draft, const aset_sink *sink);
+aset_status aset_draft_read_stage(const aset_draft *draft, const aset_sink *sink);
 
 /* Rays against a draft. */
-extern const struct aset_answers draft_answers;
+extern const struct aset_answers aset_draft_answers;
 
-aset_material draft_material(const aset_draft *draft, uint32_t texture);
+aset_material aset_draft_material(const aset_draft *draft, uint32_t texture);
 
-uint32_t draft_checksum(const uint32_t *words, size_t n_words);
+uint32_t aset_draft_checksum(const uint32_t *words, size_t n_words);
 
 #endif
 #endif

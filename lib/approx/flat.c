@@ -2,7 +2,7 @@
  * flat.c - a stream of entities in, none kept: each object marks the cells that its box touches, or tells them its
  * material.
  *
- * Invariant: which cells an object touches follows from its box and the scene's alone (slices_box), and sums are whole
+ * Invariant: which cells an object touches follows from its box and the scene's alone (aset_slices_box), and sums are whole
  * numbers, so what is made depends neither on the order of objects nor on the number of passes.
  */
 #include "approx/flat.h"
@@ -114,33 +114,33 @@ static bool is_repeated(aset_flat *f, const voxel_box *box) {
 /* An object that the counter has taken. */
 static aset_status take_object(aset_flat *f, aset_vec3 low, aset_vec3 high) {
     aset_cells *cells = &f->space.cells;
-    voxel_box box = slices_box(&f->space.slices, &f->stage, low, high);
+    voxel_box box = aset_slices_box(&f->space.slices, &f->stage, low, high);
     if (f->phase == FLAT_NUMBERS && f->number == 0) {
         f->number = find_number(f);
     }
     bool repeated = is_repeated(f, &box);
     switch (f->phase) {
     case FLAT_BLOCKS:
-        f->space.structure.references += cells_references(&box, cells->faces);
+        f->space.structure.references += aset_cells_references(&box, cells->faces);
         if (!repeated) {
-            cells_mark_blocks(cells, &box);
+            aset_cells_mark_blocks(cells, &box);
         }
         return ASET_OK;
     case FLAT_MARKS:
         compare_parts(f);
         if (!repeated) {
-            cells_mark(cells, &box);
+            aset_cells_mark(cells, &box);
         }
         return ASET_OK;
     case FLAT_NUMBERS:
         if (!repeated) {
-            cells_each_block(cells, &box, number_block, f);
+            aset_cells_each_block(cells, &box, number_block, f);
         }
         return ASET_OK;
     case FLAT_SUMS:
         if (!repeated || f->has_added) {
             f->has_added = false;
-            cells_each_block(cells, &box, add_block, f);
+            aset_cells_each_block(cells, &box, add_block, f);
         }
         return ASET_OK;
     default: return ASET_ERR_ARGUMENT;
@@ -174,7 +174,7 @@ static aset_status take_material(void *context, const aset_material *material) {
     if (status == ASET_OK) {
         texture_sum sum;
         memset(&sum, 0, sizeof sum);
-        texture_sum_add(&sum, material);
+        aset_texture_sum_add(&sum, material);
         memcpy(f->parts, sum.parts, sizeof f->parts);
         set_step(f);
         f->number = 0;
@@ -209,7 +209,7 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
     if (status != ASET_OK) {
         return status;
     }
-    sphere_bounds(at, &low, &high);
+    aset_sphere_bounds(at, &low, &high);
     return take_object(f, low, high);
 }
 #endif
@@ -225,7 +225,7 @@ static aset_status take_cone(void *context, const aset_vec3 *base, aset_real bas
     if (status != ASET_OK) {
         return status;
     }
-    cone_bounds(at, &low, &high);
+    aset_cone_bounds(at, &low, &high);
     return take_object(f, low, high);
 }
 #endif

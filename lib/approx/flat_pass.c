@@ -40,21 +40,21 @@ static aset_status begin_blocks(aset_flat *f) {
     f->least = 0;
     while (!fits(f, (size_t)ASET_BYTES_CELLS(n[0], n[1], n[2], faces, 0))) {
         f->least = 0;
-        if (!f->is_auto || !slices_coarsen(f->options.divisions, false)) {
+        if (!f->is_auto || !aset_slices_coarsen(f->options.divisions, false)) {
             return ASET_ERR_NOMEM;
         }
     }
     memset(&f->space.structure, 0, sizeof f->space.structure);
-    slices_make(&f->space.slices, &f->stage, n);
-    cells_take_map(&f->space.cells, &f->space.slices, faces, f->arena);
-    f->space.structure.leaves = cells_in_all(n, faces);
+    aset_slices_make(&f->space.slices, &f->stage, n);
+    aset_cells_take_map(&f->space.cells, &f->space.slices, faces, f->arena);
+    f->space.structure.leaves = aset_cells_in_all(n, faces);
     f->phase = FLAT_BLOCKS;
     return ASET_OK;
 }
 
 /* No room for need bytes: once more with coarser divisions if they are ours to choose. */
 static aset_status begin_again(aset_flat *f, size_t need) {
-    if (!f->is_auto || !slices_coarsen(f->options.divisions, need / 8 > left_of(f))) {
+    if (!f->is_auto || !aset_slices_coarsen(f->options.divisions, need / 8 > left_of(f))) {
         return ASET_ERR_NOMEM;
     }
     aset_arena_release(f->arena, &f->stage_mark);
@@ -62,12 +62,12 @@ static aset_status begin_again(aset_flat *f, size_t need) {
 }
 
 static aset_status end_blocks(aset_flat *f) {
-    cells_rank_blocks(&f->space.cells);
+    aset_cells_rank_blocks(&f->space.cells);
     size_t need = ASET_ROUND(12 * (size_t)f->space.cells.n_blocks);
     if (!fits(f, need)) {
         return begin_again(f, need);
     }
-    cells_take_marks(&f->space.cells, f->arena);
+    aset_cells_take_marks(&f->space.cells, f->arena);
     f->is_first = true;
     f->differing = 0;
     f->largest_part = 0;
@@ -104,7 +104,7 @@ static void pack_one(aset_flat *f) {
     texture_sum sum;
     memcpy(sum.parts, f->common, sizeof sum.parts);
     sum.n = 1;
-    aset_material texture = texture_average(&sum);
+    aset_material texture = aset_texture_average(&sum);
     f->summary.textures = &texture;
     f->summary.n_textures = 1;
     pack(f);
@@ -131,7 +131,8 @@ static bool take_numbers(aset_flat *f, size_t *need) {
 
 static aset_status end_marks(aset_flat *f) {
     size_t need;
-    if (!cells_rank_marks(&f->space.cells) || (f->counts.objects > 0 && f->largest_part >= UINT64_MAX / f->counts.objects)) {
+    if (!aset_cells_rank_marks(&f->space.cells) ||
+        (f->counts.objects > 0 && f->largest_part >= UINT64_MAX / f->counts.objects)) {
         return ASET_ERR_LIMIT;
     }
     f->work_mark = aset_arena_mark(f->arena);
@@ -193,7 +194,7 @@ static aset_status settle(aset_flat *f) {
         }
         texture_sum sum = words != NULL ? whole_sum(f, (uint32_t)words[0], words + 1)
                                         : whole_sum(f, 1, flat_known(f, number));
-        bits_put(f->wide, f->wide_width, cell, texture_take(&f->summary, &recent, &sum));
+        bits_put(f->wide, f->wide_width, cell, aset_texture_take(&f->summary, &recent, &sum));
     }
     return ASET_OK;
 }
@@ -283,14 +284,14 @@ static aset_status choose(aset_flat *f) {
     uint32_t *n = f->options.divisions;
     f->is_auto = n[0] == 0 && n[1] == 0 && n[2] == 0;
     if (f->is_auto) {
-        slices_auto_divisions(&f->stage, f->counts.objects, left_of(f), n);
+        aset_slices_auto_divisions(&f->stage, f->counts.objects, left_of(f), n);
     }
     for (int a = 0; a < 3; a++) {
         if (n[a] < 1 || n[a] > ASET_DIVISIONS_MAX) {
             return ASET_ERR_ARGUMENT;
         }
     }
-    f->summary.capacity = f->options.textures > 0 ? f->options.textures : summary_capacity(f->counts.materials);
+    f->summary.capacity = f->options.textures > 0 ? f->options.textures : aset_summary_capacity_for(f->counts.materials);
     return f->summary.capacity <= ASET_TEXTURES_MAX ? ASET_OK : ASET_ERR_ARGUMENT;
 }
 
@@ -319,14 +320,14 @@ aset_status aset_flat_init(aset_flat *flat, aset_arena *arena, const aset_counte
     if (flat->counts.objects > 0) {
         flat->stage.low = flat->low;
         flat->stage.high = flat->high;
-        flat->stage.margin = object_margin(flat->low, flat->high);
+        flat->stage.margin = aset_object_margin(flat->low, flat->high);
     }
     flat->stage_mark = aset_arena_mark(arena);
     flat->stage_sink = aset_scene_sink(&flat->stage);
     flat->checks = aset_counter_sink(&flat->counter);
     flat->space.method = method;
     flat->space.is_flat = true;
-    status = slices_precise(&flat->stage) ? choose(flat) : ASET_ERR_PRECISION;
+    status = aset_slices_precise(&flat->stage) ? choose(flat) : ASET_ERR_PRECISION;
     status = status == ASET_OK ? begin_blocks(flat) : status;
     if (status != ASET_OK) {
         aset_arena_release(arena, &flat->mark);
@@ -344,7 +345,7 @@ aset_status aset_flat_finish(aset_scene *stage, aset_space *space, aset_summary 
     space->scene = stage;
     space->structure.nonempty = space->cells.n_cells;
     summary->space = space;
-    summary->answers = &summary_answers;
+    summary->answers = &aset_summary_answers;
     flat->phase = FLAT_FAILED; /* of whatever still comes */
     return ASET_OK;
 }

@@ -45,7 +45,7 @@ static void add_sample(aset_baker *b, sheet *s, int32_t i, int32_t j) {
     if (key != s->last_key || s->last_ceiling != b->ceiling_block) { /* bins move with the ceiling */
         uint32_t block = baker_block_at(b, at[0], at[1], at[2]);
         bool is_ours = block >= b->floor_block && block < b->ceiling_block;
-        s->last = is_ours ? bins_find(b, key) : NULL;
+        s->last = is_ours ? aset_bins_find(b, key) : NULL;
         s->last_key = key;
         s->last_ceiling = b->ceiling_block;
     }
@@ -221,7 +221,7 @@ static inline void polygon_in_columns(aset_baker *b, const aset_real *points, ui
     }
 }
 
-void sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
+void aset_sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
     for (uint32_t i = 0; i < n; i++) {
         aset_real column[3];
         to_columns(b, points + 3 * i, column);
@@ -230,7 +230,7 @@ void sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *cros
     polygon_in_columns(b, points, n, crossings);
 }
 
-void sheet_triangle(aset_baker *b, const aset_real *points) {
+void aset_sheet_triangle(aset_baker *b, const aset_real *points) {
     aset_real columns[9];
     for (int k = 0; k < 3; k++) {
         to_columns(b, points + 3 * k, columns + 3 * k);
@@ -238,9 +238,9 @@ void sheet_triangle(aset_baker *b, const aset_real *points) {
     polygon_in_columns(b, columns, 3, NULL);
 }
 
-void sheet_triangles(aset_baker *b, const aset_real *points, size_t n) {
+void aset_sheet_triangles(aset_baker *b, const aset_real *points, size_t n) {
     for (; n > 0; n--, points += 9) {
-        sheet_triangle(b, points);
+        aset_sheet_triangle(b, points);
     }
 }
 
@@ -267,7 +267,7 @@ static uint32_t parts_of_turn(const aset_baker *b, aset_real radius) {
 
 /* A point's turn by 360 / parts degrees: cosine and sine made of tangents, as the core has no others. */
 static void turn_of(uint32_t parts, aset_real *cosine, aset_real *sine) {
-    aset_real t = real_tangent_deg(R(180) / (aset_real)parts);
+    aset_real t = aset_real_tangent_deg(R(180) / (aset_real)parts);
     *cosine = (1 - t * t) / (1 + t * t);
     *sine = 2 * t / (1 + t * t);
 }
@@ -284,7 +284,7 @@ static void rotate(aset_real at[2], aset_real cosine, aset_real sine) {
     at[0] = x;
 }
 
-void sheet_sphere(aset_baker *b, aset_vec3 centre, aset_real radius) {
+void aset_sheet_sphere(aset_baker *b, aset_vec3 centre, aset_real radius) {
     uint32_t parts = parts_of_turn(b, real_abs(radius)) / 2 * 2;
     aset_real cosine, sine, around[2] = {1, 0};
     turn_of(parts, &cosine, &sine);
@@ -311,10 +311,10 @@ void sheet_sphere(aset_baker *b, aset_vec3 centre, aset_real radius) {
 #endif
 
 #if ASET_WITH_CONES
-void sheet_cone(aset_baker *b, aset_vec3 base, aset_real base_radius, aset_vec3 apex, aset_real apex_radius) {
-    aset_vec3 axis = vec_unit(vec_sub(apex, base));
+void aset_sheet_cone(aset_baker *b, aset_vec3 base, aset_real base_radius, aset_vec3 apex, aset_real apex_radius) {
+    aset_vec3 axis = aset_vec_unit(vec_sub(apex, base));
     aset_vec3 other = real_abs(axis.x) < R(0.6) ? vec(1, 0, 0) : vec(0, 1, 0);
-    aset_vec3 x = vec_unit(vec_cross(other, axis)), y = vec_cross(axis, x);
+    aset_vec3 x = aset_vec_unit(vec_cross(other, axis)), y = vec_cross(axis, x);
     aset_real r0 = real_abs(base_radius), r1 = real_abs(apex_radius), cosine, sine;
     uint32_t parts = parts_of_turn(b, real_max(r0, r1));
     turn_of(parts, &cosine, &sine);

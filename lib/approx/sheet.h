@@ -7,14 +7,14 @@
 #if ASET_WITH_DRAFTS
 
 /* points are the scene's and become columns; crossings: room for n. */
-void sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings);
-void sheet_triangle(aset_baker *b, const aset_real *points);
-void sheet_triangles(aset_baker *b, const aset_real *points, size_t n);
+void aset_sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings);
+void aset_sheet_triangle(aset_baker *b, const aset_real *points);
+void aset_sheet_triangles(aset_baker *b, const aset_real *points, size_t n);
 #if ASET_WITH_SPHERES
-void sheet_sphere(aset_baker *b, aset_vec3 centre, aset_real radius);
+void aset_sheet_sphere(aset_baker *b, aset_vec3 centre, aset_real radius);
 #endif
 #if ASET_WITH_CONES
-void sheet_cone(aset_baker *b, aset_vec3 base, aset_real base_radius, aset_vec3 apex, aset_real apex_radius);
+void aset_sheet_cone(aset_baker *b, aset_vec3 base, aset_real base_radius, aset_vec3 apex, aset_real apex_radius);
 #endif
 
 #endif

@@ -18,7 +18,7 @@
 #define AUTO_TEXTURES_MAX 4096u
 #define AUTO_TEXTURES_PER_MATERIAL 32u
 
-uint32_t summary_capacity(uint32_t n_materials) {
+uint32_t aset_summary_capacity_for(uint32_t n_materials) {
     uint32_t capacity = AUTO_TEXTURES_MIN;
     while (capacity < AUTO_TEXTURES_MAX && capacity / AUTO_TEXTURES_PER_MATERIAL < n_materials) {
         capacity *= 2;
@@ -27,7 +27,7 @@ uint32_t summary_capacity(uint32_t n_materials) {
 }
 
 uint32_t aset_summary_capacity(const aset_scene *scene) {
-    return summary_capacity(scene->counts.materials);
+    return aset_summary_capacity_for(scene->counts.materials);
 }
 
 typedef struct filling {
@@ -43,15 +43,15 @@ typedef struct filling {
 /* The first pass: the list grows until it is full. */
 static void enter_texture(filling *f) {
     aset_summary *summary = f->summary;
-    unsigned slot = texture_slot(&f->sum);
-    aset_material texture = texture_average(&f->sum);
+    unsigned slot = aset_texture_slot(&f->sum);
+    aset_material texture = aset_texture_average(&f->sum);
     uint32_t number;
-    if (f->recent.known[slot] && texture_equal(&texture, &f->recent.textures[slot])) {
+    if (f->recent.known[slot] && aset_texture_equal(&texture, &f->recent.textures[slot])) {
         return;
     }
     f->recent.textures[slot] = texture;
     f->recent.known[slot] = true;
-    if (texture_find(summary, &texture, &number) || summary->n_textures == summary->capacity) {
+    if (aset_texture_find(summary, &texture, &number) || summary->n_textures == summary->capacity) {
         return;
     }
     if (summary->n_textures == f->room) {
@@ -66,7 +66,7 @@ static void finish_cell(filling *f) {
         return;
     }
     if (f->numbers) { /* none is entered any more: those that are not in the list did not fit */
-        bits_put(f->summary->of_cell, f->summary->width, f->cell, texture_take(f->summary, &f->recent, &f->sum));
+        bits_put(f->summary->of_cell, f->summary->width, f->cell, aset_texture_take(f->summary, &f->recent, &f->sum));
     } else {
         enter_texture(f);
     }
@@ -80,7 +80,7 @@ static void look_at_cell(void *context, uint32_t cell, const uint32_t *objects, 
         f->cell = cell;
     }
     for (uint32_t i = 0; i < n; i++) {
-        texture_sum_add(&f->sum, shape_of(f->summary->space->scene, objects[i]).material);
+        aset_texture_sum_add(&f->sum, shape_of(f->summary->space->scene, objects[i]).material);
     }
 }
 
@@ -104,7 +104,7 @@ static aset_status list_textures(aset_summary *summary, const aset_space *space,
     size_t left = arena->size - arena->used, room = left / sizeof *summary->textures;
     memset(summary, 0, sizeof *summary);
     summary->space = space;
-    summary->answers = &summary_answers;
+    summary->answers = &aset_summary_answers;
     summary->capacity = capacity > 0 ? capacity : aset_summary_capacity(space->scene);
     summary->textures = (aset_material *)(void *)(arena->block + arena->used);
     *bytes = ASET_BYTES_SUMMARY(space->cells.n_cells, summary->capacity);

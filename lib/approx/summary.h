@@ -6,10 +6,10 @@
 #include "base/bits.h"
 
 #if ASET_WITH_APPROXIMATION
-extern const struct aset_answers summary_answers;
+extern const struct aset_answers aset_summary_answers;
 
 /* The capacity taken for so many materials when 0 is asked for. */
-uint32_t summary_capacity(uint32_t n_materials);
+uint32_t aset_summary_capacity_for(uint32_t n_materials);
 
 static inline const aset_material *summary_texture(const aset_summary *summary, uint32_t cell) {
     return summary->textures + bits_get(summary->of_cell, summary->width, cell);

@@ -34,7 +34,7 @@ static bool trapped(const aset_tracer *tracer, aset_real t) {
     if (t > tracer->curtail * R(1.01) * (w[0] + w[1] + w[2])) { /* behind all three sides one after another: most hits */
         return tracer->curtail_more;
     }
-    aset_real bound = tracer->curtail * vec_length(vec(w[0], w[1], w[2]));
+    aset_real bound = tracer->curtail * aset_vec_length(vec(w[0], w[1], w[2]));
     return tracer->curtail_more ? t > bound : t < bound;
 }
 
@@ -59,7 +59,7 @@ static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const pro
     return true;
 }
 
-/* Below this a component of a unit direction moves a ray by less than any margin: as probe_make's. */
+/* Below this a component of a unit direction moves a ray by less than any margin: as aset_probe_make's. */
 #define STILL R(8.7e-19)
 
 static inline void walk_axis(probe *ray, int a, aset_real origin, aset_real direction) {
@@ -69,7 +69,7 @@ static inline void walk_axis(probe *ray, int a, aset_real origin, aset_real dire
     ray->direction[a] = direction;
 }
 
-/* probe_make without what only polygons want. */
+/* aset_probe_make without what only polygons want. */
 static void walk_probe(probe *ray, aset_vec3 origin, aset_vec3 direction) {
     walk_axis(ray, 0, origin.x, direction.x);
     walk_axis(ray, 1, origin.y, direction.y);
@@ -79,13 +79,13 @@ static void walk_probe(probe *ray, aset_vec3 origin, aset_vec3 direction) {
 static uint32_t summary_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                              aset_statistics *statistics) {
     probe ray;
-    aset_vec3 start = approach_origin(tracer->scene, origin);
+    aset_vec3 start = aset_approach_origin(tracer->scene, origin);
     walk_probe(&ray, start, direction);
-    aset_real moved = approach_entered(tracer->scene, start) ? 0 : approach_move(&ray, tracer->scene);
+    aset_real moved = approach_entered(tracer->scene, start) ? 0 : aset_approach_move(&ray, tracer->scene);
     hit->near = probe_origin(&ray);
     hit->cover = 1;
     hit->scene = NULL;
-    hit->by = &summary_answers;
+    hit->by = &aset_summary_answers;
     if (!approximate_hit(hit, tracer, &ray, moved, t_max * tracer->scene->scale, statistics)) {
         return 0;
     }
@@ -114,6 +114,6 @@ static void summary_surface(aset_hit *surface, aset_material *own, const aset_tr
     surface->material = summary_texture(tracer->summary, hit->cell);
 }
 
-const struct aset_answers summary_answers = {false, summary_meet, summary_any, summary_surface, NULL};
+const struct aset_answers aset_summary_answers = {false, summary_meet, summary_any, summary_surface, NULL};
 
 #endif

@@ -30,7 +30,7 @@ static void parts_of(const aset_material *m, aset_real parts[TEXTURE_PARTS]) {
 #endif
 }
 
-void texture_sum_add(texture_sum *sum, const aset_material *material) {
+void aset_texture_sum_add(texture_sum *sum, const aset_material *material) {
     aset_real parts[TEXTURE_PARTS];
     parts_of(material, parts);
     for (int i = 0; i < TEXTURE_PARTS; i++) {
@@ -39,7 +39,7 @@ void texture_sum_add(texture_sum *sum, const aset_material *material) {
     sum->n++;
 }
 
-aset_material texture_average(const texture_sum *sum) {
+aset_material aset_texture_average(const texture_sum *sum) {
     aset_real parts[TEXTURE_PARTS];
     for (int i = 0; i < TEXTURE_PARTS; i++) {
         parts[i] = (aset_real)((sum->parts[i] + sum->n / 2) / sum->n) / UNIT;
@@ -77,7 +77,7 @@ static aset_real texture_difference(const aset_material *a, const aset_material 
     return sum;
 }
 
-bool texture_equal(const aset_material *a, const aset_material *b) {
+bool aset_texture_equal(const aset_material *a, const aset_material *b) {
     bool same = a->fill.r == b->fill.r && a->fill.g == b->fill.g && a->fill.b == b->fill.b && a->diffuse == b->diffuse &&
                 a->specular == b->specular && a->shine == b->shine;
 #if ASET_WITH_REFRACTION
@@ -86,9 +86,9 @@ bool texture_equal(const aset_material *a, const aset_material *b) {
     return same;
 }
 
-bool texture_find(const aset_summary *summary, const aset_material *texture, uint32_t *number) {
+bool aset_texture_find(const aset_summary *summary, const aset_material *texture, uint32_t *number) {
     for (uint32_t i = 0; i < summary->n_textures; i++) {
-        if (texture_equal(summary->textures + i, texture)) {
+        if (aset_texture_equal(summary->textures + i, texture)) {
             *number = i;
             return true;
         }
@@ -96,7 +96,7 @@ bool texture_find(const aset_summary *summary, const aset_material *texture, uin
     return false;
 }
 
-uint32_t texture_nearest(const aset_summary *summary, const aset_material *texture) {
+uint32_t aset_texture_nearest(const aset_summary *summary, const aset_material *texture) {
     uint32_t nearest = 0;
     aset_real least = REAL_INFINITY;
     for (uint32_t i = 0; i < summary->n_textures; i++) {
@@ -109,7 +109,7 @@ uint32_t texture_nearest(const aset_summary *summary, const aset_material *textu
     return nearest;
 }
 
-unsigned texture_slot(const texture_sum *sum) {
+unsigned aset_texture_slot(const texture_sum *sum) {
     uint64_t hash = 0;
     for (int i = 0; i < TEXTURE_PARTS; i++) {
         hash = (hash ^ (sum->parts[i] / sum->n)) * UINT64_C(0x9e3779b97f4a7c15);
@@ -117,19 +117,19 @@ unsigned texture_slot(const texture_sum *sum) {
     return (unsigned)(hash >> 58); /* 0 to TEXTURE_RECENT - 1 */
 }
 
-uint32_t texture_take(aset_summary *summary, texture_recent *recent, const texture_sum *sum) {
-    unsigned slot = texture_slot(sum);
-    aset_material texture = texture_average(sum);
-    if (recent->known[slot] && texture_equal(&texture, &recent->textures[slot])) {
+uint32_t aset_texture_take(aset_summary *summary, texture_recent *recent, const texture_sum *sum) {
+    unsigned slot = aset_texture_slot(sum);
+    aset_material texture = aset_texture_average(sum);
+    if (recent->known[slot] && aset_texture_equal(&texture, &recent->textures[slot])) {
         return recent->number[slot];
     }
     uint32_t number = summary->n_textures;
-    bool is_own = texture_find(summary, &texture, &number);
+    bool is_own = aset_texture_find(summary, &texture, &number);
     if (!is_own && number < summary->capacity) {
         summary->textures[summary->n_textures++] = texture;
         is_own = true;
     } else if (!is_own) {
-        number = texture_nearest(summary, &texture);
+        number = aset_texture_nearest(summary, &texture);
         summary->merged++;
     }
     recent->textures[slot] = texture;

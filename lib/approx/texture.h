@@ -14,18 +14,18 @@ typedef struct texture_sum {
     uint32_t n;
 } texture_sum;
 
-void texture_sum_add(texture_sum *sum, const aset_material *material);
+void aset_texture_sum_add(texture_sum *sum, const aset_material *material);
 
 /* The average, each part rounded to the nearest unit; n > 0. */
-aset_material texture_average(const texture_sum *sum);
+aset_material aset_texture_average(const texture_sum *sum);
 
-bool texture_equal(const aset_material *a, const aset_material *b);
+bool aset_texture_equal(const aset_material *a, const aset_material *b);
 
 /* The number of an equal texture in the summary's list; false if there is none. */
-bool texture_find(const aset_summary *summary, const aset_material *texture, uint32_t *number);
+bool aset_texture_find(const aset_summary *summary, const aset_material *texture, uint32_t *number);
 
 /* The number of the texture in the summary's list, which is not empty, that looks most like this one. */
-uint32_t texture_nearest(const aset_summary *summary, const aset_material *texture);
+uint32_t aset_texture_nearest(const aset_summary *summary, const aset_material *texture);
 
 /*
  * Averages met lately, by a hash of their sums' parts: most cells are like one seen before, and the list need not be
@@ -40,13 +40,13 @@ typedef struct texture_recent {
 } texture_recent;
 
 /* Where in it an average of this sum stands. */
-unsigned texture_slot(const texture_sum *sum);
+unsigned aset_texture_slot(const texture_sum *sum);
 
 /*
  * The number of a sum's average in the summary's list: it is entered if it is new and the list not full, else the nearest's
  * number, and the cell is counted as merged. Cells come in dense order.
  */
-uint32_t texture_take(aset_summary *summary, texture_recent *recent, const texture_sum *sum);
+uint32_t aset_texture_take(aset_summary *summary, texture_recent *recent, const texture_sum *sum);
 
 #endif
 #endif

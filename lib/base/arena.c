@@ -24,7 +24,7 @@ aset_status aset_arena_init(aset_arena *arena, void *block, size_t size) {
     if (arena == NULL || (block == NULL && size > 0) || (uintptr_t)block % ASET_ALIGN != 0) {
         return ASET_ERR_ARGUMENT;
     }
-    if (!real_is_sound()) {
+    if (!aset_real_is_sound()) {
         return ASET_ERR_ARITHMETIC;
     }
     memset(arena, 0, sizeof *arena);

@@ -10,7 +10,7 @@
 #include "base/real.h"
 
 /* All numbers through volatile ones: so the compiler cannot do these sums itself. */
-bool real_is_sound(void) {
+bool aset_real_is_sound(void) {
     const volatile aset_real one = 1, up = 1 + 2 * REAL_UNIT, unit = REAL_UNIT, least = REAL_LEAST;
     aset_real x = up, square = one + 4 * unit;
     aset_real fused = x * x - square; /* x * x = 1 + 4 u + 4 u^2, of which the last is rounded away */
@@ -66,7 +66,7 @@ static aset_real exp2_of(aset_real x) {
     return value / (aset_real)(1 << -whole);
 }
 
-aset_real real_power(aset_real base, aset_real exponent) {
+aset_real aset_real_power(aset_real base, aset_real exponent) {
     if (exponent <= 0 || base >= 1) {
         return 1;
     }
@@ -76,7 +76,7 @@ aset_real real_power(aset_real base, aset_real exponent) {
     return exp2_of(exponent * log2_of(base));
 }
 
-aset_real real_tangent_deg(aset_real angle_deg) {
+aset_real aset_real_tangent_deg(aset_real angle_deg) {
     /* sine and cosine of a quarter of the angle (at most 0.393 rad) by Taylor's series, then doubled twice */
     aset_real x = angle_deg * R(0.25 * 3.14159265358979323846 / 180), x2 = x * x;
     aset_real sine = x * (1 - x2 * (R(1.0 / 6) - x2 * (R(1.0 / 120) - x2 * (R(1.0 / 5040) - x2 * R(1.0 / 362880)))));

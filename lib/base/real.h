@@ -44,7 +44,7 @@
  * What macros do not show: that a product and a sum are rounded each by itself, to nearest, and that denormals are numbers. False
  * where a compiler's flags or the program's own settings have it otherwise.
  */
-bool real_is_sound(void);
+bool aset_real_is_sound(void);
 
 static inline aset_real real_sqrt(aset_real x) {
 #if ASET_REAL_BITS == 32
@@ -71,9 +71,9 @@ static inline bool real_finite(aset_real x) {
 }
 
 /* base^exponent for 0 <= base <= 1 (above 1 is taken as 1) and exponent >= 0; within 2^-12 of the true value. */
-aset_real real_power(aset_real base, aset_real exponent);
+aset_real aset_real_power(aset_real base, aset_real exponent);
 
 /* The tangent of an angle of 0 <= angle_deg < 90 degrees. */
-aset_real real_tangent_deg(aset_real angle_deg);
+aset_real aset_real_tangent_deg(aset_real angle_deg);
 
 #endif

@@ -29,7 +29,7 @@ static aset_vec3 in_range(aset_vec3 a, int *steps) {
     return a;
 }
 
-aset_real vec_length(aset_vec3 a) {
+aset_real aset_vec_length(aset_vec3 a) {
     aset_real square = vec_dot(a, a);
     if (square > SQUARE_MIN && square < SQUARE_MAX) {
         return real_sqrt(square);
@@ -49,7 +49,7 @@ aset_real vec_length(aset_vec3 a) {
     return length;
 }
 
-aset_vec3 vec_unit(aset_vec3 a) {
+aset_vec3 aset_vec_unit(aset_vec3 a) {
     aset_real square = vec_dot(a, a);
     if (!(square > SQUARE_MIN && square < SQUARE_MAX)) {
         if (!(vec_largest(a) > 0)) {
@@ -62,11 +62,11 @@ aset_vec3 vec_unit(aset_vec3 a) {
     return vec_scale(a, 1 / real_sqrt(square));
 }
 
-aset_vec3 vec_unit_length(aset_vec3 a, aset_real *length) {
+aset_vec3 aset_vec_unit_length(aset_vec3 a, aset_real *length) {
     aset_real square = vec_dot(a, a);
     if (!(square > SQUARE_MIN && square < SQUARE_MAX)) {
-        *length = vec_length(a);
-        return vec_unit(a);
+        *length = aset_vec_length(a);
+        return aset_vec_unit(a);
     }
     *length = real_sqrt(square);
     return vec_scale(a, 1 / *length);

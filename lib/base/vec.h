@@ -56,12 +56,12 @@ static inline aset_real vec_at(const aset_vec3 *a, int axis) {
 }
 
 /* The length without overflow or underflow on the way; 0 for the zero vector. */
-aset_real vec_length(aset_vec3 a);
+aset_real aset_vec_length(aset_vec3 a);
 
 /* The unit vector along a, or zero for zero; tiny and huge vectors keep their direction. */
-aset_vec3 vec_unit(aset_vec3 a);
+aset_vec3 aset_vec_unit(aset_vec3 a);
 
 /* Both, for one root. */
-aset_vec3 vec_unit_length(aset_vec3 a, aset_real *length);
+aset_vec3 aset_vec_unit_length(aset_vec3 a, aset_real *length);
 
 #endif

@@ -19,7 +19,7 @@ static inline aset_real farther(aset_real low, aset_real high, aset_real origin)
     return real_max(high - origin, origin - low);
 }
 
-/* Narrows the ray's stay in a box by one axis, as probe_box does. False: it misses. */
+/* Narrows the ray's stay in a box by one axis, as aset_probe_box does. False: it misses. */
 static inline bool narrow(const probe *ray, int a, aset_real low, aset_real high, aset_real *t_in, aset_real *t_out) {
     aset_real origin = ray->origin[a], inverse = ray->inverse[a];
     if (!ray->moves[a]) {
@@ -47,7 +47,7 @@ static aset_real distance_to(const probe *ray, aset_vec3 low, aset_vec3 high, as
     return meets && t_in <= t_out && t_in > 0 ? t_in : 0;
 }
 
-aset_real approach_move(probe *ray, const aset_scene *scene) {
+aset_real aset_approach_move(probe *ray, const aset_scene *scene) {
     if (!(scene->margin > 0)) { /* it has no box */
         return 0;
     }
@@ -65,14 +65,14 @@ aset_real approach_move(probe *ray, const aset_scene *scene) {
     return moved;
 }
 
-aset_vec3 approach_origin(const aset_scene *scene, aset_vec3 origin) {
+aset_vec3 aset_approach_origin(const aset_scene *scene, aset_vec3 origin) {
     const aset_real end = REAL_MAX / 4;
     aset_vec3 end_3 = vec(end, end, end);
     return scene->scale == 1 ? origin : vec_max(vec_scale(end_3, -1), vec_min(end_3, scene_point(scene, origin)));
 }
 
-aset_real approach_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
-    origin = approach_origin(scene, origin);
-    *ray = probe_make(origin, direction);
-    return approach_entered(scene, origin) ? 0 : approach_move(ray, scene);
+aset_real aset_approach_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
+    origin = aset_approach_origin(scene, origin);
+    *ray = aset_probe_make(origin, direction);
+    return approach_entered(scene, origin) ? 0 : aset_approach_move(ray, scene);
 }

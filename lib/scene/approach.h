@@ -5,7 +5,7 @@
 #include "scene/shape.h"
 
 /*
- * Is the origin in less than the box that approach_move measures to? Then that moves nothing: so with most rays that a surface
+ * Is the origin in less than the box that aset_approach_move measures to? Then that moves nothing: so with most rays that a surface
  * sends on.
  */
 static inline bool approach_entered(const aset_scene *scene, aset_vec3 origin) {
@@ -16,13 +16,13 @@ static inline bool approach_entered(const aset_scene *scene, aset_vec3 origin) {
 }
 
 /* A ray's origin in the scene's own lengths; from so far that these have no number for it, at the end of their range. */
-aset_vec3 approach_origin(const aset_scene *scene, aset_vec3 origin);
+aset_vec3 aset_approach_origin(const aset_scene *scene, aset_vec3 origin);
 
 /* Moves a ray from outside near the scene. By how much. */
-aset_real approach_move(probe *ray, const aset_scene *scene);
+aset_real aset_approach_move(probe *ray, const aset_scene *scene);
 
 /* Makes a ray of unit direction ready, in the scene's own lengths; from outside it is moved near the scene. By how much. */
-aset_real approach_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction);
+aset_real aset_approach_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction);
 
 /* t_max as the moved ray counts it, and the rounding of that. */
 static inline aset_real approach_end(aset_real moved, aset_real t_max) {

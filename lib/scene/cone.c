@@ -20,7 +20,7 @@ static cone cone_of(const aset_real *at) {
     aset_vec3 along = vec_sub(vec(at[4], at[5], at[6]), vec(at[0], at[1], at[2]));
     cone c;
     c.base = vec(at[0], at[1], at[2]);
-    c.axis = vec_unit_length(along, &c.length);
+    c.axis = aset_vec_unit_length(along, &c.length);
     c.radius = real_abs(at[3]);
     c.slope = (real_abs(at[7]) - c.radius) / c.length;
     c.inside_only = at[3] < 0 || at[7] < 0;
@@ -30,7 +30,7 @@ static cone cone_of(const aset_real *at) {
 /* Not normalised: from the axis outwards, tilted by the slope. */
 static aset_vec3 outward(const cone *c, aset_vec3 from_base) {
     aset_real height = vec_dot(from_base, c->axis);
-    aset_vec3 across = vec_unit(vec_along(from_base, -height, c->axis));
+    aset_vec3 across = aset_vec_unit(vec_along(from_base, -height, c->axis));
     return vec_along(across, -c->slope, c->axis);
 }
 
@@ -84,7 +84,7 @@ static bool sphere_missed(const aset_real *at, const probe *ray) {
     return vec_dot(nearest, nearest) > R(17.0 / 16) * square + 17 * slack * slack * vec_dot(f, f);
 }
 
-aset_real cone_nearest(const aset_real *at, const probe *ray, unsigned sides) {
+aset_real aset_cone_nearest(const aset_real *at, const probe *ray, unsigned sides) {
     if (sphere_missed(at, ray)) {
         return REAL_INFINITY;
     }
@@ -95,7 +95,7 @@ aset_real cone_nearest(const aset_real *at, const probe *ray, unsigned sides) {
     aset_real f_height = vec_dot(f, c.axis), d_height = vec_dot(d, c.axis);
     aset_vec3 f_across = vec_along(f, -f_height, c.axis), d_across = vec_along(d, -d_height, c.axis);
     aset_real radius = c.radius + c.slope * f_height, growth = c.slope * d_height;
-    aset_real distance = vec_length(f_across);
+    aset_real distance = aset_vec_length(f_across);
     aset_real roots[2];
     if (!quadratic_roots(vec_dot(d_across, d_across) - growth * growth, vec_dot(d_across, f_across) - growth * radius,
                          (distance - radius) * (distance + radius), roots)) {
@@ -114,7 +114,7 @@ static aset_vec3 disc_reach(aset_vec3 k) {
     return vec(real_sqrt(k.y * k.y + k.z * k.z), real_sqrt(k.x * k.x + k.z * k.z), real_sqrt(k.x * k.x + k.y * k.y));
 }
 
-void cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
+void aset_cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
     cone c = cone_of(at);
     aset_vec3 apex = vec(at[4], at[5], at[6]);
     aset_vec3 reach = disc_reach(c.axis), base_reach = vec_scale(reach, c.radius), apex_reach = vec_scale(reach, real_abs(at[7]));
@@ -122,9 +122,9 @@ void cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
     *high = vec_max(vec_add(c.base, base_reach), vec_add(apex, apex_reach));
 }
 
-aset_vec3 cone_normal(const aset_real *at, aset_vec3 point) {
+aset_vec3 aset_cone_normal(const aset_real *at, aset_vec3 point) {
     cone c = cone_of(at);
-    aset_vec3 n = vec_unit(outward(&c, vec_sub(point, c.base)));
+    aset_vec3 n = aset_vec_unit(outward(&c, vec_sub(point, c.base)));
     return c.inside_only ? vec_scale(n, -1) : n;
 }
 

@@ -10,12 +10,12 @@
 
 static aset_status count_background(void *context, const aset_colour *colour) {
     (void)context;
-    return entity_check_colour(colour);
+    return aset_entity_check_colour(colour);
 }
 
 static aset_status count_view(void *context, const aset_view *view) {
     aset_counter *counter = context;
-    aset_status status = entity_check_view(view);
+    aset_status status = aset_entity_check_view(view);
     if (status == ASET_OK) {
         counter->view = *view;
         counter->has_view = true;
@@ -25,7 +25,7 @@ static aset_status count_view(void *context, const aset_view *view) {
 
 static aset_status count_light(void *context, const aset_light *light) {
     aset_counter *counter = context;
-    aset_status status = entity_check_light(light);
+    aset_status status = aset_entity_check_light(light);
     if (status == ASET_OK) {
         counter->counts.lights++;
     }
@@ -34,7 +34,7 @@ static aset_status count_light(void *context, const aset_light *light) {
 
 static aset_status count_material(void *context, const aset_material *material) {
     aset_counter *counter = context;
-    aset_status status = entity_check_material(material);
+    aset_status status = aset_entity_check_material(material);
     if (status == ASET_OK) {
         counter->recent.pending = *material;
         counter->recent.has_pending = true;
@@ -49,7 +49,7 @@ static aset_status count_object(aset_counter *counter, uint64_t coordinates, ase
     if (counter->counts.objects == UINT32_MAX - 1) {
         return ASET_ERR_LIMIT;
     }
-    aset_status status = entity_use_material(&counter->recent, &is_new);
+    aset_status status = aset_entity_use_material(&counter->recent, &is_new);
     if (status != ASET_OK) {
         return status;
     }
@@ -65,19 +65,19 @@ static aset_status count_object(aset_counter *counter, uint64_t coordinates, ase
 #if ASET_WITH_POLYGONS
 static aset_status count_polygon_begin(void *context, uint32_t n_points, bool with_normals) {
     aset_counter *counter = context;
-    return outline_begin(&counter->outline, n_points, with_normals);
+    return aset_outline_begin(&counter->outline, n_points, with_normals);
 }
 
 static aset_status count_polygon_point(void *context, const aset_vec3 *point, const aset_vec3 *normal) {
     aset_counter *counter = context;
-    return outline_point(&counter->outline, point, normal);
+    return aset_outline_point(&counter->outline, point, normal);
 }
 
 static aset_status count_polygon_end(void *context) {
     aset_counter *counter = context;
     const aset_outline *outline = &counter->outline;
     uint64_t n = outline->n_given;
-    aset_status status = outline_end(&counter->outline);
+    aset_status status = aset_outline_end(&counter->outline);
     if (status == ASET_OK) {
         status = count_object(counter, outline->with_normals ? ASET_COORDINATES_PATCH(n) : ASET_COORDINATES_POLYGON(n),
                               outline->low, outline->high);
@@ -94,9 +94,9 @@ static aset_status count_sphere(void *context, const aset_vec3 *centre, aset_rea
     aset_counter *counter = context;
     const aset_real at[ASET_COORDINATES_SPHERE] = {centre->x, centre->y, centre->z, radius};
     aset_vec3 low, high;
-    aset_status status = entity_check_sphere(centre, radius);
+    aset_status status = aset_entity_check_sphere(centre, radius);
     if (status == ASET_OK) {
-        sphere_bounds(at, &low, &high);
+        aset_sphere_bounds(at, &low, &high);
         status = count_object(counter, ASET_COORDINATES_SPHERE, low, high);
     }
     if (status == ASET_OK) {
@@ -113,9 +113,9 @@ static aset_status count_cone(void *context, const aset_vec3 *base, aset_real ba
     const aset_real at[ASET_COORDINATES_CONE] = {base->x, base->y, base->z, base_radius,
                                                  apex->x, apex->y, apex->z, apex_radius};
     aset_vec3 low, high;
-    aset_status status = entity_check_cone(base, base_radius, apex, apex_radius);
+    aset_status status = aset_entity_check_cone(base, base_radius, apex, apex_radius);
     if (status == ASET_OK) {
-        cone_bounds(at, &low, &high);
+        aset_cone_bounds(at, &low, &high);
         status = count_object(counter, ASET_COORDINATES_CONE, low, high);
     }
     if (status == ASET_OK) {

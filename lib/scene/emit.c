@@ -4,7 +4,7 @@
 #if ASET_WITH_POLYGONS
 static aset_status emit_outline(const aset_sink *sink, const shape *s, aset_real per_scale, bool with_normals) {
     uint32_t stride = with_normals ? 6 : 3, n;
-    const aset_real *at = polygon_points(s->at, s->n, stride, &n);
+    const aset_real *at = aset_polygon_points(s->at, s->n, stride, &n);
     aset_status status = sink->polygon_begin(sink->context, n, with_normals);
     for (; n > 0 && status == ASET_OK; n--, at += stride) {
         aset_vec3 point = vec_scale(vec(at[0], at[1], at[2]), per_scale), normal = vec(0, 0, 0);

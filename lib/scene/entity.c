@@ -19,16 +19,16 @@ static bool is_amount(aset_real x) {
     return x >= 0 && real_finite(x);
 }
 
-aset_status entity_check_colour(const aset_colour *colour) {
+aset_status aset_entity_check_colour(const aset_colour *colour) {
     return is_amount(colour->r) && is_amount(colour->g) && is_amount(colour->b) ? ASET_OK : ASET_ERR_ARGUMENT;
 }
 
-aset_status entity_check_view(const aset_view *view) {
+aset_status aset_entity_check_view(const aset_view *view) {
     if (!is_place(view->from) || !is_place(view->at) || !vec_finite(view->up)) {
         return ASET_ERR_GEOMETRY;
     }
-    aset_vec3 along = vec_unit(vec_sub(view->at, view->from));
-    if (!(vec_largest(vec_cross(along, vec_unit(view->up))) > 0)) {
+    aset_vec3 along = aset_vec_unit(vec_sub(view->at, view->from));
+    if (!(vec_largest(vec_cross(along, aset_vec_unit(view->up))) > 0)) {
         return ASET_ERR_GEOMETRY; /* no direction, no up, or both the same */
     }
     bool perspective = view->height == 0 && view->angle_deg > 0 && view->angle_deg < 180;
@@ -36,19 +36,19 @@ aset_status entity_check_view(const aset_view *view) {
     return perspective || orthographic ? ASET_OK : ASET_ERR_ARGUMENT;
 }
 
-aset_status entity_check_light(const aset_light *light) {
+aset_status aset_entity_check_light(const aset_light *light) {
     if (!is_place(light->position) || (light->directional && !(vec_largest(light->position) > 0))) {
         return ASET_ERR_GEOMETRY;
     }
-    return light->has_colour ? entity_check_colour(&light->colour) : ASET_OK;
+    return light->has_colour ? aset_entity_check_colour(&light->colour) : ASET_OK;
 }
 
-aset_status entity_check_material(const aset_material *material) {
+aset_status aset_entity_check_material(const aset_material *material) {
     bool fine = is_amount(material->diffuse) && is_amount(material->specular) && is_amount(material->shine);
 #if ASET_WITH_REFRACTION
     fine = fine && is_amount(material->transmittance) && is_amount(material->refraction_index);
 #endif
-    return fine ? entity_check_colour(&material->fill) : ASET_ERR_ARGUMENT;
+    return fine ? aset_entity_check_colour(&material->fill) : ASET_ERR_ARGUMENT;
 }
 
 static bool same_material(const aset_material *a, const aset_material *b) {
@@ -60,7 +60,7 @@ static bool same_material(const aset_material *a, const aset_material *b) {
     return same;
 }
 
-aset_status entity_use_material(aset_recent_materials *recent, bool *is_new) {
+aset_status aset_entity_use_material(aset_recent_materials *recent, bool *is_new) {
     *is_new = false;
     if (!recent->has_pending) {
         return recent->has_current ? ASET_OK : ASET_ERR_ARGUMENT;
@@ -81,12 +81,12 @@ aset_status entity_use_material(aset_recent_materials *recent, bool *is_new) {
     return ASET_OK;
 }
 
-aset_status entity_check_sphere(const aset_vec3 *centre, aset_real radius) {
+aset_status aset_entity_check_sphere(const aset_vec3 *centre, aset_real radius) {
     return is_place(*centre) && real_abs(radius) <= COORDINATE_MAX && radius != 0 ? ASET_OK : ASET_ERR_GEOMETRY;
 }
 
-aset_status entity_check_cone(const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
-                              aset_real apex_radius) {
+aset_status aset_entity_check_cone(const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
+                                   aset_real apex_radius) {
     bool finite = is_place(*base) && is_place(*apex) && real_abs(base_radius) <= COORDINATE_MAX &&
                   real_abs(apex_radius) <= COORDINATE_MAX;
     bool one_sign = (base_radius >= 0 && apex_radius >= 0) || (base_radius <= 0 && apex_radius <= 0);
@@ -94,7 +94,7 @@ aset_status entity_check_cone(const aset_vec3 *base, aset_real base_radius, cons
     return finite && one_sign && some && vec_largest(vec_sub(*apex, *base)) > 0 ? ASET_OK : ASET_ERR_GEOMETRY;
 }
 
-aset_status outline_begin(aset_outline *outline, uint32_t n_points, bool with_normals) {
+aset_status aset_outline_begin(aset_outline *outline, uint32_t n_points, bool with_normals) {
     outline->open = false;
 #if !ASET_WITH_PATCHES
     if (with_normals) {
@@ -111,7 +111,7 @@ aset_status outline_begin(aset_outline *outline, uint32_t n_points, bool with_no
     return ASET_OK;
 }
 
-aset_status outline_point(aset_outline *outline, const aset_vec3 *point, const aset_vec3 *normal) {
+aset_status aset_outline_point(aset_outline *outline, const aset_vec3 *point, const aset_vec3 *normal) {
     bool fits = outline->open && outline->n_given < outline->n_announced && outline->with_normals == (normal != NULL);
     if (!fits || !is_place(*point) || (normal != NULL && !vec_finite(*normal))) {
         outline->open = false;
@@ -123,7 +123,7 @@ aset_status outline_point(aset_outline *outline, const aset_vec3 *point, const a
     return ASET_OK;
 }
 
-aset_status outline_end(aset_outline *outline) {
+aset_status aset_outline_end(aset_outline *outline) {
     bool complete = outline->open && outline->n_given == outline->n_announced;
     outline->open = false;
     return complete ? ASET_OK : ASET_ERR_GEOMETRY;

@@ -8,24 +8,24 @@
 #include "aset/scene.h"
 #include "base/vec.h"
 
-aset_status entity_check_view(const aset_view *view);
-aset_status entity_check_light(const aset_light *light);
-aset_status entity_check_colour(const aset_colour *colour);
-aset_status entity_check_material(const aset_material *material);
+aset_status aset_entity_check_view(const aset_view *view);
+aset_status aset_entity_check_light(const aset_light *light);
+aset_status aset_entity_check_colour(const aset_colour *colour);
+aset_status aset_entity_check_material(const aset_material *material);
 
 /*
  * The current material as a number below recent->n, made current if it is pending. *is_new: it has to be stored, as number
  * recent->n - 1. ASET_ERR_ARGUMENT if no material has come yet.
  */
-aset_status entity_use_material(aset_recent_materials *recent, bool *is_new);
+aset_status aset_entity_use_material(aset_recent_materials *recent, bool *is_new);
 
-aset_status entity_check_sphere(const aset_vec3 *centre, aset_real radius);
-aset_status entity_check_cone(const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
-                              aset_real apex_radius);
+aset_status aset_entity_check_sphere(const aset_vec3 *centre, aset_real radius);
+aset_status aset_entity_check_cone(const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
+                                   aset_real apex_radius);
 
 /* Begin, follow and end a polygon. end: ASET_ERR_GEOMETRY unless all announced points came. */
-aset_status outline_begin(aset_outline *outline, uint32_t n_points, bool with_normals);
-aset_status outline_point(aset_outline *outline, const aset_vec3 *point, const aset_vec3 *normal);
-aset_status outline_end(aset_outline *outline);
+aset_status aset_outline_begin(aset_outline *outline, uint32_t n_points, bool with_normals);
+aset_status aset_outline_point(aset_outline *outline, const aset_vec3 *point, const aset_vec3 *normal);
+aset_status aset_outline_end(aset_outline *outline);
 
 #endif

@@ -4,7 +4,7 @@
 /* Below this a component of a unit direction moves a ray by less than any margin: 2^-60 against margins of 2^-21. */
 #define STILL R(8.7e-19)
 
-probe probe_make(aset_vec3 origin, aset_vec3 direction) {
+probe aset_probe_make(aset_vec3 origin, aset_vec3 direction) {
     probe ray = {{origin.x, origin.y, origin.z}, {direction.x, direction.y, direction.z}, {0, 0, 0}, {false, false, false},
                  {0, 1, 2}, {0, 0, 0}};
     for (int a = 0; a < 3; a++) {
@@ -26,7 +26,7 @@ probe probe_make(aset_vec3 origin, aset_vec3 direction) {
     return ray;
 }
 
-bool probe_box(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real *t_in, aset_real *t_out) {
+bool aset_probe_box(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real *t_in, aset_real *t_out) {
     const aset_real lows[3] = {low.x, low.y, low.z}, highs[3] = {high.x, high.y, high.z};
     aset_real in = -REAL_INFINITY, out = REAL_INFINITY;
     for (int a = 0; a < 3; a++) {
@@ -48,20 +48,20 @@ bool probe_box(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real *t_in,
     return in <= out;
 }
 
-void object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high) {
+void aset_object_own_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high) {
     shape s = shape_of(scene, object);
     switch (s.kind) {
 #if ASET_WITH_POLYGONS
-    case KIND_POLYGON: polygon_bounds(s.at, s.n, 3, low, high); return;
+    case KIND_POLYGON: aset_polygon_bounds(s.at, s.n, 3, low, high); return;
 #if ASET_WITH_PATCHES
-    case KIND_PATCH: polygon_bounds(s.at, s.n, 6, low, high); return;
+    case KIND_PATCH: aset_polygon_bounds(s.at, s.n, 6, low, high); return;
 #endif
 #endif
 #if ASET_WITH_SPHERES
-    case KIND_SPHERE: sphere_bounds(s.at, low, high); return;
+    case KIND_SPHERE: aset_sphere_bounds(s.at, low, high); return;
 #endif
 #if ASET_WITH_CONES
-    case KIND_CONE: cone_bounds(s.at, low, high); return;
+    case KIND_CONE: aset_cone_bounds(s.at, low, high); return;
 #endif
     default: break;
     }
@@ -69,12 +69,12 @@ void object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, ase
 }
 
 void aset_object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high) {
-    object_bounds(scene, object, low, high);
+    aset_object_own_bounds(scene, object, low, high);
     *low = vec_scale(*low, 1 / scene->scale);
     *high = vec_scale(*high, 1 / scene->scale);
 }
 
-aset_real object_margin(aset_vec3 low, aset_vec3 high) {
+aset_real aset_object_margin(aset_vec3 low, aset_vec3 high) {
     aset_real size = vec_largest(vec_sub(high, low)), largest = real_max(vec_largest(low), vec_largest(high));
     aset_real margin = real_max(size, largest) * (4 * REAL_UNIT);
     return margin > 0 ? margin : R(1e-30); /* every object in the point 0: any width will do, but a width it must be */
@@ -84,57 +84,57 @@ static aset_real shape_nearest(const shape *s, const probe *ray, unsigned sides,
     (void)ray, (void)sides, (void)margin, (void)limit;
     switch (s->kind) {
 #if ASET_WITH_POLYGONS
-    case KIND_POLYGON: return polygon_nearest(s->at, s->n, 3, ray, sides, margin, limit);
+    case KIND_POLYGON: return aset_polygon_nearest(s->at, s->n, 3, ray, sides, margin, limit);
 #if ASET_WITH_PATCHES
-    case KIND_PATCH: return polygon_nearest(s->at, s->n, 6, ray, sides, margin, limit);
+    case KIND_PATCH: return aset_polygon_nearest(s->at, s->n, 6, ray, sides, margin, limit);
 #endif
 #endif
 #if ASET_WITH_SPHERES
-    case KIND_SPHERE: return sphere_nearest(s->at, ray, sides);
+    case KIND_SPHERE: return aset_sphere_nearest(s->at, ray, sides);
 #endif
 #if ASET_WITH_CONES
-    case KIND_CONE: return cone_nearest(s->at, ray, sides);
+    case KIND_CONE: return aset_cone_nearest(s->at, ray, sides);
 #endif
     default: return REAL_INFINITY;
     }
 }
 
-aset_real object_nearest(const aset_scene *scene, uint32_t object, const probe *ray, aset_real limit) {
+aset_real aset_object_nearest(const aset_scene *scene, uint32_t object, const probe *ray, aset_real limit) {
     shape s = shape_of(scene, object);
     aset_real t = shape_nearest(&s, ray, s.material->one_sided ? SIDE_FRONT : SIDE_BOTH, scene->margin, limit);
     if (!(t < REAL_INFINITY)) {
         return REAL_INFINITY;
     }
     aset_vec3 low, high, margin;
-    object_bounds(scene, object, &low, &high);
+    aset_object_own_bounds(scene, object, &low, &high);
     aset_real m = scene->margin, t_in, t_out;
     margin = vec(m, m, m);
-    if (!probe_box(ray, vec_sub(low, margin), vec_add(high, margin), &t_in, &t_out)) {
+    if (!aset_probe_box(ray, vec_sub(low, margin), vec_add(high, margin), &t_in, &t_out)) {
         return REAL_INFINITY;
     }
     t = t < t_in ? t_in : t > t_out ? t_out : t;
     return t > 0 ? t : REAL_INFINITY;
 }
 
-void object_normals(const aset_scene *scene, uint32_t object, aset_vec3 point, aset_vec3 *shading,
-                    aset_vec3 *geometric) {
+void aset_object_normals(const aset_scene *scene, uint32_t object, aset_vec3 point, aset_vec3 *shading,
+                         aset_vec3 *geometric) {
     shape s = shape_of(scene, object);
     (void)point;
     switch (s.kind) {
 #if ASET_WITH_POLYGONS
-    case KIND_POLYGON: *geometric = polygon_normal(s.at, s.n, 3); break;
+    case KIND_POLYGON: *geometric = aset_polygon_normal(s.at, s.n, 3); break;
 #if ASET_WITH_PATCHES
     case KIND_PATCH:
-        *geometric = polygon_normal(s.at, s.n, 6);
-        *shading = patch_normal(s.at, s.n, point);
+        *geometric = aset_polygon_normal(s.at, s.n, 6);
+        *shading = aset_patch_normal(s.at, s.n, point);
         return;
 #endif
 #endif
 #if ASET_WITH_SPHERES
-    case KIND_SPHERE: *geometric = sphere_normal(s.at, point); break;
+    case KIND_SPHERE: *geometric = aset_sphere_normal(s.at, point); break;
 #endif
 #if ASET_WITH_CONES
-    case KIND_CONE: *geometric = cone_normal(s.at, point); break;
+    case KIND_CONE: *geometric = aset_cone_normal(s.at, point); break;
 #endif
     default: *geometric = vec(0, 0, 0); break;
     }

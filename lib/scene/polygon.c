@@ -26,7 +26,7 @@ static const aset_real *points_of(const aset_real *at, uint32_t n, unsigned stri
     return at + head;
 }
 
-const aset_real *polygon_points(const aset_real *at, uint32_t n, unsigned stride, uint32_t *n_points) {
+const aset_real *aset_polygon_points(const aset_real *at, uint32_t n, unsigned stride, uint32_t *n_points) {
     return points_of(at, n, stride, n_points);
 }
 
@@ -53,13 +53,13 @@ static aset_vec3 triangle_normal(const aset_real *points, unsigned stride, aset_
     aset_real ab2 = vec_dot(ab, ab), bc2 = vec_dot(bc, bc), ca2 = vec_dot(ca, ca);
     if (bc2 >= ab2 && bc2 >= ca2) {
         *corner = a;
-        return vec_unit(vec_cross(ca, ab));
+        return aset_vec_unit(vec_cross(ca, ab));
     }
     *corner = ca2 >= ab2 ? b : c;
-    return vec_unit(ca2 >= ab2 ? vec_cross(ab, bc) : vec_cross(bc, ca));
+    return aset_vec_unit(ca2 >= ab2 ? vec_cross(ab, bc) : vec_cross(bc, ca));
 }
 
-aset_vec3 polygon_normal(const aset_real *at, uint32_t n, unsigned stride) {
+aset_vec3 aset_polygon_normal(const aset_real *at, uint32_t n, unsigned stride) {
     aset_vec3 corner;
     return n > 3 * stride ? vec(at[0], at[1], at[2]) : triangle_normal(at, stride, &corner);
 }
@@ -70,10 +70,11 @@ static void put_vec(aset_real *at, aset_vec3 v) {
     at[2] = v.z;
 }
 
-void polygon_finish(aset_real *at, uint32_t n, unsigned stride, aset_vec3 low, aset_vec3 high) {
+void aset_polygon_finish(aset_real *at, uint32_t n, unsigned stride, aset_vec3 low, aset_vec3 high) {
     uint32_t n_points;
     aset_real *points = at + (points_of(at, n, stride, &n_points) - at);
-    aset_vec3 normal = n_points == 3 ? polygon_normal(at, n, stride) : vec_unit(polygon_area(points, n_points, stride));
+    aset_vec3 normal =
+        n_points == 3 ? aset_polygon_normal(at, n, stride) : aset_vec_unit(polygon_area(points, n_points, stride));
     if (n_points > 3) {
         put_vec(at, normal);
     }
@@ -89,7 +90,7 @@ void polygon_finish(aset_real *at, uint32_t n, unsigned stride, aset_vec3 low, a
     }
 }
 
-void polygon_scale(aset_real *at, uint32_t n, unsigned stride, aset_real factor) {
+void aset_polygon_scale(aset_real *at, uint32_t n, unsigned stride, aset_real factor) {
     uint32_t n_points;
     aset_real *points = at + (points_of(at, n, stride, &n_points) - at);
     for (uint32_t i = 0; n_points >= BOXED_FROM && i < 6; i++) {
@@ -100,7 +101,7 @@ void polygon_scale(aset_real *at, uint32_t n, unsigned stride, aset_real factor)
     }
 }
 
-void polygon_bounds(const aset_real *at, uint32_t n, unsigned stride, aset_vec3 *low, aset_vec3 *high) {
+void aset_polygon_bounds(const aset_real *at, uint32_t n, unsigned stride, aset_vec3 *low, aset_vec3 *high) {
     uint32_t n_points;
     const aset_real *p = points_of(at, n, stride, &n_points);
     if (n_points >= BOXED_FROM) {
@@ -196,12 +197,12 @@ static aset_real outline_nearest(const aset_real *at, const aset_real *points, u
 static bool box_missed(const aset_real *at, const probe *ray, aset_real margin, aset_real limit) {
     aset_vec3 m = vec(margin, margin, margin);
     aset_real t_in, t_out;
-    return !probe_box(ray, vec_sub(vec(at[3], at[4], at[5]), m), vec_add(vec(at[6], at[7], at[8]), m), &t_in, &t_out) ||
+    return !aset_probe_box(ray, vec_sub(vec(at[3], at[4], at[5]), m), vec_add(vec(at[6], at[7], at[8]), m), &t_in, &t_out) ||
            t_in > limit || t_out < 0;
 }
 
-aset_real polygon_nearest(const aset_real *at, uint32_t n, unsigned stride, const probe *ray, unsigned sides,
-                          aset_real margin, aset_real limit) {
+aset_real aset_polygon_nearest(const aset_real *at, uint32_t n, unsigned stride, const probe *ray, unsigned sides,
+                               aset_real margin, aset_real limit) {
     uint32_t n_points;
     const aset_real *points = points_of(at, n, stride, &n_points);
     if (n_points >= BOXED_FROM && box_missed(at, ray, margin, limit)) {
@@ -212,7 +213,7 @@ aset_real polygon_nearest(const aset_real *at, uint32_t n, unsigned stride, cons
     if (!(t > 0)) {
         return REAL_INFINITY;
     }
-    if (sides != SIDE_BOTH && vec_dot(polygon_normal(at, n, stride), probe_direction(ray)) >= 0) {
+    if (sides != SIDE_BOTH && vec_dot(aset_polygon_normal(at, n, stride), probe_direction(ray)) >= 0) {
         return REAL_INFINITY; /* seen from behind; a polygon has no other side to hit */
     }
     return t;
@@ -242,10 +243,10 @@ static aset_real corner_weights(const aset_real *a, const aset_real *b, const as
 }
 
 /* Of the triangles that fan out from the first point, the one that holds the point best gives the normal. */
-aset_vec3 patch_normal(const aset_real *at, uint32_t n, aset_vec3 point) {
+aset_vec3 aset_patch_normal(const aset_real *at, uint32_t n, aset_vec3 point) {
     uint32_t n_points;
     const aset_real *p = points_of(at, n, 6, &n_points);
-    aset_vec3 normal = polygon_normal(at, n, 6), best = normal;
+    aset_vec3 normal = aset_polygon_normal(at, n, 6), best = normal;
     aset_real best_weight = -REAL_INFINITY;
     for (uint32_t i = 1; i + 1 < n_points; i++) {
         const aset_real *b = p + (size_t)i * 6, *c = b + 6;
@@ -256,7 +257,7 @@ aset_vec3 patch_normal(const aset_real *at, uint32_t n, aset_vec3 point) {
                        w[0] * p[5] + w[1] * b[5] + w[2] * c[5]);
         }
     }
-    best = vec_unit(best);
+    best = aset_vec_unit(best);
     return vec_largest(best) > 0 ? best : normal;
 }
 

@@ -30,7 +30,7 @@
 #define SCALE_DOWN R(0x1p-576)
 #endif
 
-aset_real scene_scale_for(aset_real largest) {
+aset_real aset_scene_scale_for(aset_real largest) {
     if (largest >= SCALE_HIGH) {
         return SCALE_DOWN;
     }
@@ -42,7 +42,7 @@ static void scale_object(aset_scene *scene, uint32_t object, aset_real factor) {
     aset_real *at = scene->coordinates + scene->objects[object].first;
 #if ASET_WITH_POLYGONS
     if (s.kind == KIND_POLYGON || s.kind == KIND_PATCH) {
-        polygon_scale(at, s.n, s.kind == KIND_PATCH ? 6 : 3, factor);
+        aset_polygon_scale(at, s.n, s.kind == KIND_PATCH ? 6 : 3, factor);
         return;
     }
 #endif
@@ -58,7 +58,7 @@ static void make_range(aset_scene *scene, aset_real largest) {
     if (!(largest > scene->largest)) {
         return;
     }
-    aset_real wanted = scene_scale_for(largest);
+    aset_real wanted = aset_scene_scale_for(largest);
     scene->largest = largest;
     while (scene->scale != wanted) {
         aset_real factor = wanted < scene->scale ? SCALE_DOWN : 1 / SCALE_DOWN;
@@ -68,14 +68,14 @@ static void make_range(aset_scene *scene, aset_real largest) {
         scale_outline(scene, factor);
         scene->low = vec_scale(scene->low, factor);
         scene->high = vec_scale(scene->high, factor);
-        scene->margin = object_margin(scene->low, scene->high);
+        scene->margin = aset_object_margin(scene->low, scene->high);
         scene->scale *= factor;
     }
 }
 
 static aset_status take_background(void *context, const aset_colour *colour) {
     aset_scene *scene = context;
-    aset_status status = entity_check_colour(colour);
+    aset_status status = aset_entity_check_colour(colour);
     if (status == ASET_OK) {
         scene->background = *colour;
     }
@@ -84,7 +84,7 @@ static aset_status take_background(void *context, const aset_colour *colour) {
 
 static aset_status take_view(void *context, const aset_view *view) {
     aset_scene *scene = context;
-    aset_status status = entity_check_view(view);
+    aset_status status = aset_entity_check_view(view);
     if (status == ASET_OK) {
         scene->view = *view;
         scene->has_view = true;
@@ -94,7 +94,7 @@ static aset_status take_view(void *context, const aset_view *view) {
 
 static aset_status take_light(void *context, const aset_light *light) {
     aset_scene *scene = context;
-    aset_status status = entity_check_light(light);
+    aset_status status = aset_entity_check_light(light);
     if (status != ASET_OK) {
         return status;
     }
@@ -103,7 +103,7 @@ static aset_status take_light(void *context, const aset_light *light) {
     }
     scene->lights[scene->counts.lights] = *light;
     if (light->directional) {
-        scene->lights[scene->counts.lights].position = vec_unit(light->position);
+        scene->lights[scene->counts.lights].position = aset_vec_unit(light->position);
     }
     scene->n_uncoloured += !light->has_colour;
     scene->counts.lights++;
@@ -112,7 +112,7 @@ static aset_status take_light(void *context, const aset_light *light) {
 
 static aset_status take_material(void *context, const aset_material *material) {
     aset_scene *scene = context;
-    aset_status status = entity_check_material(material);
+    aset_status status = aset_entity_check_material(material);
     if (status == ASET_OK) {
         scene->recent.pending = *material;
         scene->recent.has_pending = true;
@@ -136,7 +136,7 @@ static aset_status check_room(const aset_scene *scene, uint64_t coordinates) {
 static aset_status store_material(aset_scene *scene) {
     aset_recent_materials before = scene->recent;
     bool is_new;
-    aset_status status = entity_use_material(&scene->recent, &is_new);
+    aset_status status = aset_entity_use_material(&scene->recent, &is_new);
     if (status == ASET_OK && is_new) {
         if (scene->counts.materials == scene->limits.materials) {
             scene->recent = before;
@@ -154,11 +154,11 @@ static void finish_object(aset_scene *scene, unsigned kind, uint64_t coordinates
     object->kind_material = scene->recent.current << KIND_BITS | kind;
     scene->counts.coordinates += coordinates;
     scene->counts.objects++;
-    object_bounds(scene, scene->counts.objects - 1, &low, &high);
+    aset_object_own_bounds(scene, scene->counts.objects - 1, &low, &high);
     bool is_first = scene->counts.objects == 1;
     scene->low = is_first ? low : vec_min(scene->low, low);
     scene->high = is_first ? high : vec_max(scene->high, high);
-    scene->margin = object_margin(scene->low, scene->high);
+    scene->margin = aset_object_margin(scene->low, scene->high);
 }
 
 #endif
@@ -190,7 +190,7 @@ static void scale_outline(aset_scene *scene, aset_real factor) {
 
 static aset_status take_polygon_begin(void *context, uint32_t n_points, bool with_normals) {
     aset_scene *scene = context;
-    aset_status status = outline_begin(&scene->outline, n_points, with_normals);
+    aset_status status = aset_outline_begin(&scene->outline, n_points, with_normals);
     if (status == ASET_OK) {
         status = check_room(scene, outline_coordinates(&scene->outline));
         scene->outline.open = status == ASET_OK;
@@ -202,7 +202,7 @@ static aset_status take_polygon_point(void *context, const aset_vec3 *point, con
     aset_scene *scene = context;
     aset_outline *outline = &scene->outline;
     uint32_t index = outline->n_given;
-    aset_status status = outline_point(outline, point, normal);
+    aset_status status = aset_outline_point(outline, point, normal);
     if (status != ASET_OK) {
         return status;
     }
@@ -215,7 +215,7 @@ static aset_status take_polygon_point(void *context, const aset_vec3 *point, con
     at[1] = p.y;
     at[2] = p.z;
     if (normal != NULL) {
-        aset_vec3 unit = vec_unit(*normal);
+        aset_vec3 unit = aset_vec_unit(*normal);
         at[3] = unit.x;
         at[4] = unit.y;
         at[5] = unit.z;
@@ -226,15 +226,15 @@ static aset_status take_polygon_point(void *context, const aset_vec3 *point, con
 static aset_status take_polygon_end(void *context) {
     aset_scene *scene = context;
     aset_outline *outline = &scene->outline;
-    aset_status status = outline_end(outline);
+    aset_status status = aset_outline_end(outline);
     if (status == ASET_OK) {
         status = store_material(scene);
     }
     if (status != ASET_OK) {
         return status;
     }
-    polygon_finish(scene->coordinates + scene->counts.coordinates, (uint32_t)outline_coordinates(outline),
-                   outline_stride(outline), scene_point(scene, outline->low), scene_point(scene, outline->high));
+    aset_polygon_finish(scene->coordinates + scene->counts.coordinates, (uint32_t)outline_coordinates(outline),
+                        outline_stride(outline), scene_point(scene, outline->low), scene_point(scene, outline->high));
     finish_object(scene, outline->with_normals ? KIND_PATCH : KIND_POLYGON, outline_coordinates(outline));
     *(outline->with_normals ? &scene->counts.patches : &scene->counts.polygons) += 1;
     return ASET_OK;
@@ -260,7 +260,7 @@ static aset_status prepare_whole(aset_scene *scene, uint64_t coordinates) {
 #if ASET_WITH_SPHERES
 static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real radius) {
     aset_scene *scene = context;
-    aset_status status = entity_check_sphere(centre, radius);
+    aset_status status = aset_entity_check_sphere(centre, radius);
     if (status == ASET_OK) {
         status = prepare_whole(scene, ASET_COORDINATES_SPHERE);
     }
@@ -284,7 +284,7 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
 static aset_status take_cone(void *context, const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
                              aset_real apex_radius) {
     aset_scene *scene = context;
-    aset_status status = entity_check_cone(base, base_radius, apex, apex_radius);
+    aset_status status = aset_entity_check_cone(base, base_radius, apex, apex_radius);
     if (status == ASET_OK) {
         status = prepare_whole(scene, ASET_COORDINATES_CONE);
     }

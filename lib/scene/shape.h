@@ -33,7 +33,7 @@ typedef struct probe {
 } probe;
 
 /* direction: of unit length */
-probe probe_make(aset_vec3 origin, aset_vec3 direction);
+probe aset_probe_make(aset_vec3 origin, aset_vec3 direction);
 
 static inline aset_vec3 probe_origin(const probe *ray) {
     return vec(ray->origin[0], ray->origin[1], ray->origin[2]);
@@ -66,7 +66,7 @@ static inline aset_vec3 scene_point(const aset_scene *scene, aset_vec3 point) {
 }
 
 /* A scene is kept times a power of two that brings its largest coordinate into a range where nothing leaves that of numbers. */
-aset_real scene_scale_for(aset_real largest);
+aset_real aset_scene_scale_for(aset_real largest);
 
 /*
  * The smallest t > 0 at which the ray meets a side that is seen, REAL_INFINITY if there is none. Boxes are margin-free.
@@ -77,32 +77,32 @@ aset_real scene_scale_for(aset_real largest);
  * stride: 3, or 6 for a patch. margin is the scene's; a polygon whose grown box the ray misses or enters behind limit may be
  * passed over, for its hit would be clamped to that box.
  */
-aset_real polygon_nearest(const aset_real *at, uint32_t n, unsigned stride, const probe *ray, unsigned sides,
-                          aset_real margin, aset_real limit);
-const aset_real *polygon_points(const aset_real *at, uint32_t n, unsigned stride, uint32_t *n_points);
-void polygon_bounds(const aset_real *at, uint32_t n, unsigned stride, aset_vec3 *low, aset_vec3 *high);
-aset_vec3 polygon_normal(const aset_real *at, uint32_t n, unsigned stride);
+aset_real aset_polygon_nearest(const aset_real *at, uint32_t n, unsigned stride, const probe *ray, unsigned sides,
+                               aset_real margin, aset_real limit);
+const aset_real *aset_polygon_points(const aset_real *at, uint32_t n, unsigned stride, uint32_t *n_points);
+void aset_polygon_bounds(const aset_real *at, uint32_t n, unsigned stride, aset_vec3 *low, aset_vec3 *high);
+aset_vec3 aset_polygon_normal(const aset_real *at, uint32_t n, unsigned stride);
 #if ASET_WITH_PATCHES
-aset_vec3 patch_normal(const aset_real *at, uint32_t n, aset_vec3 point);
+aset_vec3 aset_patch_normal(const aset_real *at, uint32_t n, aset_vec3 point);
 #endif
 /* Multiplies what is a length. */
-void polygon_scale(aset_real *at, uint32_t n, unsigned stride, aset_real factor);
+void aset_polygon_scale(aset_real *at, uint32_t n, unsigned stride, aset_real factor);
 /* Fills in what stands before the points of a polygon whose points are in place. */
-void polygon_finish(aset_real *at, uint32_t n, unsigned stride, aset_vec3 low, aset_vec3 high);
+void aset_polygon_finish(aset_real *at, uint32_t n, unsigned stride, aset_vec3 low, aset_vec3 high);
 #endif
 #if ASET_WITH_SPHERES
-aset_real sphere_nearest(const aset_real *at, const probe *ray, unsigned sides);
-void sphere_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high);
-aset_vec3 sphere_normal(const aset_real *at, aset_vec3 point);
+aset_real aset_sphere_nearest(const aset_real *at, const probe *ray, unsigned sides);
+void aset_sphere_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high);
+aset_vec3 aset_sphere_normal(const aset_real *at, aset_vec3 point);
 #endif
 #if ASET_WITH_CONES
-aset_real cone_nearest(const aset_real *at, const probe *ray, unsigned sides);
-void cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high);
-aset_vec3 cone_normal(const aset_real *at, aset_vec3 point);
+aset_real aset_cone_nearest(const aset_real *at, const probe *ray, unsigned sides);
+void aset_cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high);
+aset_vec3 aset_cone_normal(const aset_real *at, aset_vec3 point);
 #endif
 
 /* aset_object_bounds in the scene's own lengths, as everything here. */
-void object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high);
+void aset_object_own_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high);
 
 /*
  * The nearest hit of the ray on one object, REAL_INFINITY without one or if it is certainly behind limit. The result is
@@ -110,23 +110,23 @@ void object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, ase
  * by construction, and a space that puts the grown box into its cells visits one of them no later than the hit, whatever
  * rounding did to t.
  */
-aset_real object_nearest(const aset_scene *scene, uint32_t object, const probe *ray, aset_real limit);
+aset_real aset_object_nearest(const aset_scene *scene, uint32_t object, const probe *ray, aset_real limit);
 
 /*
  * How far boxes grow in a scene of these bounds: scene->margin. It must exceed the rounding of a side's t, 3 u of the
  * distance between origin and side, which query.c keeps within 1.1 scene sizes, or 3 u of the largest coordinate: so 4 u of
  * both. Spaces grow boxes by twice this, so that what the clamp keeps lies strictly inside.
  */
-aset_real object_margin(aset_vec3 low, aset_vec3 high);
+aset_real aset_object_margin(aset_vec3 low, aset_vec3 high);
 
 /* The unit normals at a point on the object. */
-void object_normals(const aset_scene *scene, uint32_t object, aset_vec3 point, aset_vec3 *shading,
-                    aset_vec3 *geometric);
+void aset_object_normals(const aset_scene *scene, uint32_t object, aset_vec3 point, aset_vec3 *shading,
+                         aset_vec3 *geometric);
 
 /*
  * The interval of t in which the ray is inside a box; false if it misses. The same formula, (side - origin) * inverse, as
  * every walk uses for its slices: both are monotonous in side, so that the outer of two sides is never met later.
  */
-bool probe_box(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real *t_in, aset_real *t_out);
+bool aset_probe_box(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real *t_in, aset_real *t_out);
 
 #endif

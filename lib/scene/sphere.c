@@ -7,7 +7,7 @@
 
 #if ASET_WITH_SPHERES
 
-aset_real sphere_nearest(const aset_real *at, const probe *ray, unsigned sides) {
+aset_real aset_sphere_nearest(const aset_real *at, const probe *ray, unsigned sides) {
     aset_vec3 f = vec_sub(probe_origin(ray), vec(at[0], at[1], at[2])), d = probe_direction(ray);
     aset_real radius = real_abs(at[3]);
     aset_real middle = -vec_dot(f, d); /* t of the line's point nearest to the centre */
@@ -16,7 +16,7 @@ aset_real sphere_nearest(const aset_real *at, const probe *ray, unsigned sides) 
     if (!(discriminant >= 0)) {
         return REAL_INFINITY;
     }
-    aset_real half = real_sqrt(discriminant), length = vec_length(f);
+    aset_real half = real_sqrt(discriminant), length = aset_vec_length(f);
     aset_real product = (length - radius) * (length + radius);
     aset_real large = middle + (middle < 0 ? -half : half);
     aset_real small = large != 0 ? product / large : 0;
@@ -31,14 +31,14 @@ aset_real sphere_nearest(const aset_real *at, const probe *ray, unsigned sides) 
     return t_out > 0 && (sides & (SIDE_BOTH - outside)) != 0 ? t_out : REAL_INFINITY;
 }
 
-void sphere_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
+void aset_sphere_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
     aset_real r = real_abs(at[3]);
     *low = vec(at[0] - r, at[1] - r, at[2] - r);
     *high = vec(at[0] + r, at[1] + r, at[2] + r);
 }
 
-aset_vec3 sphere_normal(const aset_real *at, aset_vec3 point) {
-    aset_vec3 outward = vec_unit(vec_sub(point, vec(at[0], at[1], at[2])));
+aset_vec3 aset_sphere_normal(const aset_real *at, aset_vec3 point) {
+    aset_vec3 outward = aset_vec_unit(vec_sub(point, vec(at[0], at[1], at[2])));
     return at[3] < 0 ? vec_scale(outward, -1) : outward;
 }
 

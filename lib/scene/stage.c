@@ -40,7 +40,7 @@ static aset_vec3 turned(const stage *s, aset_real right, aset_real up, aset_real
 }
 
 static aset_real radius_of(aset_vec3 low, aset_vec3 high, aset_vec3 centre) {
-    aset_real radius = vec_length(vec_sub(high, low)) / 2;
+    aset_real radius = aset_vec_length(vec_sub(high, low)) / 2;
     radius = real_max(radius, vec_largest(centre) * RADIUS_SHARE);
     return radius >= RADIUS_LEAST ? radius : 1;
 }
@@ -57,7 +57,7 @@ static aset_status emit_view(const stage *s, aset_real aspect) {
     aset_view view;
     memset(&view, 0, sizeof view);
     view.at = s->centre;
-    view.from = vec_along(s->centre, distance, vec_unit(turned(s, R(-0.5), R(0.4), 1)));
+    view.from = vec_along(s->centre, distance, aset_vec_unit(turned(s, R(-0.5), R(0.4), 1)));
     view.up = turned(s, 0, 1, 0);
     view.angle_deg = ANGLE_DEG;
     return s->sink->view(s->sink->context, &view);

@@ -45,7 +45,7 @@ struct aset_answers {
     aset_real (*clearance)(const aset_tracer *tracer);
 };
 
-extern const struct aset_answers exact_answers;
+extern const struct aset_answers aset_exact_answers;
 
 /* Lengths of a hit from the scene's own to the caller's. */
 static inline void answers_to_caller(query_hit *hit, const aset_scene *scene) {

@@ -9,7 +9,7 @@
 #include "space/tree.h"
 
 static void arts_go(const aset_space *space, const probe *ray, walk_request *walk) {
-    leaves_go(space, ray, walk, tree_find, true);
+    aset_leaves_go(space, ray, walk, aset_tree_find, true);
 }
 
-const aset_method aset_arts = {"arts", true, 0, tree_measure, tree_build, arts_go, leaves_each};
+const aset_method aset_arts = {"arts", true, 0, aset_tree_measure, aset_tree_build, arts_go, aset_leaves_each};

@@ -1,9 +1,9 @@
 /* boxes.c - filling boxes, and the crossing by which a ray's way enters one. */
 #include "space/boxes.h"
 
-void boxes_fill(aset_box *boxes, const aset_slices *slices, const aset_scene *scene) {
+void aset_boxes_fill(aset_box *boxes, const aset_slices *slices, const aset_scene *scene) {
     for (uint32_t i = 0; i < scene->counts.objects; i++) {
-        voxel_box box = slices_object_box(slices, scene, i);
+        voxel_box box = aset_slices_object_box(slices, scene, i);
         for (int a = 0; a < 3; a++) {
             boxes[i].low[a] = (uint16_t)box.low[a];
             boxes[i].high[a] = (uint16_t)box.high[a];
@@ -11,7 +11,7 @@ void boxes_fill(aset_box *boxes, const aset_slices *slices, const aset_scene *sc
     }
 }
 
-void stay_make(stay *s, const dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *cell) {
+void aset_stay_make(stay *s, const dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *cell) {
     s->t_out = REAL_INFINITY;
     s->axis_out = 3;
     s->is_first = walk->axis < 0;
@@ -35,7 +35,7 @@ static bool is_before(aset_real t, int axis, aset_real u, int other) {
     return t < u || (t == u && axis < other);
 }
 
-bool stay_enters(const stay *s, const aset_slices *slices, const probe *ray, const aset_box *box) {
+bool aset_stay_enters(const stay *s, const aset_slices *slices, const probe *ray, const aset_box *box) {
     if (box_holds(box, s->voxel)) {
         return s->is_first || !box_holds(box, s->before);
     }

@@ -11,7 +11,7 @@
 #include "space/slices.h"
 
 /* Every object's box of voxels of these slices, into boxes. */
-void boxes_fill(aset_box *boxes, const aset_slices *slices, const aset_scene *scene);
+void aset_boxes_fill(aset_box *boxes, const aset_slices *slices, const aset_scene *scene);
 
 static inline bool box_holds(const aset_box *box, const int32_t voxel[3]) {
     return voxel[0] >= box->low[0] && voxel[0] <= box->high[0] && voxel[1] >= box->low[1] && voxel[1] <= box->high[1] &&
@@ -35,9 +35,9 @@ typedef struct stay {
 } stay;
 
 /* The stay of a walk in a cell of these voxels. */
-void stay_make(stay *s, const dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *cell);
+void aset_stay_make(stay *s, const dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *cell);
 
 /* Does the ray's way enter the object's box during this stay? */
-bool stay_enters(const stay *s, const aset_slices *slices, const probe *ray, const aset_box *box);
+bool aset_stay_enters(const stay *s, const aset_slices *slices, const probe *ray, const aset_box *box);
 
 #endif

@@ -1,7 +1,8 @@
 /* bricks.c - the parts of the walk among bricks that happen once for a ray or a brick that is not empty. */
 #include "space/bricks.h"
 
-void brick_begin(brick_walk *bricks, const aset_cells *cells, const aset_slices *slices, const probe *ray, const dda *way) {
+void aset_brick_begin(brick_walk *bricks, const aset_cells *cells, const aset_slices *slices, const probe *ray,
+                      const dda *way) {
     const int32_t apart[3] = {1, (int32_t)cells->bricks[0], (int32_t)(cells->bricks[0] * cells->bricks[1])};
     bricks->block = cells_block(cells, way->voxel, 0);
     for (int a = 0; a < 3; a++) {
@@ -12,17 +13,17 @@ void brick_begin(brick_walk *bricks, const aset_cells *cells, const aset_slices 
     }
 }
 
-uint32_t brick_land(const brick_walk *bricks, const aset_slices *slices, const probe *ray, dda *way) {
+uint32_t aset_brick_land(const brick_walk *bricks, const aset_slices *slices, const probe *ray, dda *way) {
     voxel_box window;
     for (int a = 0; a < 3; a++) {
         int32_t last = (int32_t)slices->n[a] - 1, high = bricks->at[a] * 4 + 3;
         window.low[a] = bricks->at[a] * 4;
         window.high[a] = high < last ? high : last;
     }
-    return dda_land(way, slices, ray, &window);
+    return aset_dda_land(way, slices, ray, &window);
 }
 
-uint32_t brick_count_rest(const aset_slices *slices, const probe *ray, dda *way, bool inside, aset_real limit) {
+uint32_t aset_brick_count_rest(const aset_slices *slices, const probe *ray, dda *way, bool inside, aset_real limit) {
     voxel_box whole = slices_whole(slices);
     uint32_t leaving = 0;
     if (inside || way->t > limit) {
@@ -35,5 +36,5 @@ uint32_t brick_count_rest(const aset_slices *slices, const probe *ray, dda *way,
         way->voxel[a] = last;
         whole.low[a] = whole.high[a] = last;
     }
-    return leaving + dda_land(way, slices, ray, &whole);
+    return leaving + aset_dda_land(way, slices, ray, &whole);
 }

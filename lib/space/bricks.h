@@ -28,7 +28,8 @@ static inline aset_real brick_exit(const aset_slices *slices, const probe *ray, 
     return dda_crossing(slices, ray, a, ray->direction[a] > 0 ? (beyond < n ? beyond : n) : at * 4);
 }
 
-void brick_begin(brick_walk *bricks, const aset_cells *cells, const aset_slices *slices, const probe *ray, const dda *way);
+void aset_brick_begin(brick_walk *bricks, const aset_cells *cells, const aset_slices *slices, const probe *ray,
+                      const dda *way);
 
 /* Into the next brick along axis a. False: out of the volume. */
 static inline bool brick_cross(brick_walk *bricks, const aset_slices *slices, const probe *ray, dda *way, int a) {
@@ -61,13 +62,13 @@ static inline bool brick_left(const dda *way) {
 /*
  * Brings way into the voxel in which the ray enters the brick that the last brick_step led into. The crossings passed over.
  */
-uint32_t brick_land(const brick_walk *bricks, const aset_slices *slices, const probe *ray, dda *way);
+uint32_t aset_brick_land(const brick_walk *bricks, const aset_slices *slices, const probe *ray, dda *way);
 
 /*
  * The cells that a walk passed since the voxel last known, when it ended among bricks: out of the volume (inside is false),
  * or in a brick entered behind limit.
  */
-uint32_t brick_count_rest(const aset_slices *slices, const probe *ray, dda *way, bool inside, aset_real limit);
+uint32_t aset_brick_count_rest(const aset_slices *slices, const probe *ray, dda *way, bool inside, aset_real limit);
 
 /*
  * A ray along one axis, as bricks_go keeps it: its brick and a voxel of that. Slice numbers are kept as reals, which hold
@@ -282,10 +283,10 @@ FUSED bool lanes_begin(lanes *w, const aset_space *space, const probe *ray, unsi
     w->axis = 3;
     w->t = 0;
     w->block = w->flip = 0;
-    if (!slices_voxel(w->slices, ray, voxel)) {
+    if (!aset_slices_voxel(w->slices, ray, voxel)) {
         voxel_box whole = slices_whole(w->slices);
         dda way;
-        if (!dda_enter(&way, w->slices, ray, &whole)) {
+        if (!aset_dda_enter(&way, w->slices, ray, &whole)) {
             return false;
         }
         voxel[0] = way.voxel[0];

@@ -17,7 +17,7 @@ static aset_status brute_measure(aset_space_size *size, const aset_scene *scene,
 static void brute_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
     (void)arena;
     const uint32_t one[3] = {1, 1, 1};
-    slices_make(&space->slices, space->scene, one);
+    aset_slices_make(&space->slices, space->scene, one);
     space->cells.n_cells = size->n_cells;
     space->structure.leaves = 1;
     space->structure.nonempty = size->n_cells;
@@ -32,7 +32,7 @@ static void brute_go(const aset_space *space, const probe *ray, walk_request *wa
     walk->cells++;
     walk->nonempty += n_objects > 0;
     if (!walk->wants_references) {
-        if (n_objects > 0 && dda_enter(&entry, &space->slices, ray, &whole) && entry.t > 0 && entry.t <= walk->limit) {
+        if (n_objects > 0 && aset_dda_enter(&entry, &space->slices, ray, &whole) && entry.t > 0 && entry.t <= walk->limit) {
             cell.t = entry.t;
             cell.face = entry.axis * 2 + (ray->direction[entry.axis] < 0);
             walk->visit(walk, &cell);

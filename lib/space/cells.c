@@ -64,16 +64,16 @@ static void each_object_block(const uint32_t bricks[3], uint32_t faces, const vo
     }
 }
 
-void cells_each_block(const aset_cells *cells, const voxel_box *box, cells_action act, void *context) {
+void aset_cells_each_block(const aset_cells *cells, const voxel_box *box, cells_action act, void *context) {
     each_object_block(cells->bricks, cells->faces, box, act, context);
 }
 
-uint64_t cells_in_all(const uint32_t n[3], uint32_t faces) {
+uint64_t aset_cells_in_all(const uint32_t n[3], uint32_t faces) {
     uint64_t x = n[0], y = n[1], z = n[2];
     return faces == 1 ? x * y * z : 2 * ((x + 1) * y * z + (y + 1) * x * z + (z + 1) * x * y);
 }
 
-uint64_t cells_references(const voxel_box *box, uint32_t faces) {
+uint64_t aset_cells_references(const voxel_box *box, uint32_t faces) {
     uint64_t n[3];
     for (int a = 0; a < 3; a++) {
         n[a] = (uint64_t)(box->high[a] - box->low[a] + 1);
@@ -121,14 +121,14 @@ static void count_bricks(const aset_slices *slices, uint32_t bricks[3]) {
     }
 }
 
-aset_status cells_measure(const aset_scene *scene, const aset_slices *slices, uint32_t faces, uint64_t *scratch,
-                          size_t scratch_bytes, aset_space_size *size) {
+aset_status aset_cells_measure(const aset_scene *scene, const aset_slices *slices, uint32_t faces, uint64_t *scratch,
+                               size_t scratch_bytes, aset_space_size *size) {
     uint32_t bricks[3];
     uint64_t references = 0, n_blocks = 0, n_cells = 0;
     count_bricks(slices, bricks);
     for (uint32_t i = 0; i < scene->counts.objects; i++) {
-        voxel_box box = slices_object_box(slices, scene, i);
-        references += cells_references(&box, faces);
+        voxel_box box = aset_slices_object_box(slices, scene, i);
+        references += aset_cells_references(&box, faces);
     }
     uint64_t all = (uint64_t)bricks[0] * bricks[1] * bricks[2] * faces;
     if (all > UINT32_MAX - 64 || references > UINT32_MAX - 2) {
@@ -143,7 +143,7 @@ aset_status cells_measure(const aset_scene *scene, const aset_slices *slices, ui
         uint32_t layer = bricks[0] * bricks[1] * faces;
         int32_t z_low = (int32_t)(c.base / layer * 4), z_high = (int32_t)((c.base + (c.n - 1)) / layer * 4 + 3);
         for (uint32_t i = 0; i < scene->counts.objects; i++) {
-            voxel_box box = slices_object_box(slices, scene, i);
+            voxel_box box = aset_slices_object_box(slices, scene, i);
             if (chunk_touched(&c, bricks, faces, &box)) {
                 mark_chunk_part(&c, bricks, faces, &box, z_low, z_high);
             }
@@ -167,7 +167,7 @@ static size_t map_words(const aset_cells *cells) {
     return ((size_t)cells->bricks[0] * cells->bricks[1] * cells->bricks[2] * cells->faces + 63) / 64;
 }
 
-void cells_take_map(aset_cells *cells, const aset_slices *slices, uint32_t faces, aset_arena *arena) {
+void aset_cells_take_map(aset_cells *cells, const aset_slices *slices, uint32_t faces, aset_arena *arena) {
     count_bricks(slices, cells->bricks);
     cells->faces = faces;
     size_t words = map_words(cells);
@@ -182,11 +182,11 @@ static void mark_map(void *context, uint32_t block, uint64_t marks) {
     cells->map[block >> 6] |= UINT64_C(1) << (block & 63);
 }
 
-void cells_mark_blocks(aset_cells *cells, const voxel_box *box) {
-    cells_each_block(cells, box, mark_map, cells);
+void aset_cells_mark_blocks(aset_cells *cells, const voxel_box *box) {
+    aset_cells_each_block(cells, box, mark_map, cells);
 }
 
-void cells_rank_blocks(aset_cells *cells) {
+void aset_cells_rank_blocks(aset_cells *cells) {
     size_t words = map_words(cells);
     uint32_t n = 0;
     for (size_t i = 0; i < words; i++) {
@@ -196,7 +196,7 @@ void cells_rank_blocks(aset_cells *cells) {
     cells->n_blocks = n;
 }
 
-void cells_take_marks(aset_cells *cells, aset_arena *arena) {
+void aset_cells_take_marks(aset_cells *cells, aset_arena *arena) {
     size_t n = cells->n_blocks;
     cells->marks = aset_arena_alloc(arena, 12 * n, ASET_CATEGORY_CELLS);
     cells->first = (uint32_t *)(void *)(cells->marks + n);
@@ -211,11 +211,11 @@ static void mark_cells(void *context, uint32_t block, uint64_t marks) {
     }
 }
 
-void cells_mark(aset_cells *cells, const voxel_box *box) {
-    cells_each_block(cells, box, mark_cells, cells);
+void aset_cells_mark(aset_cells *cells, const voxel_box *box) {
+    aset_cells_each_block(cells, box, mark_cells, cells);
 }
 
-bool cells_rank_marks(aset_cells *cells) {
+bool aset_cells_rank_marks(aset_cells *cells) {
     uint64_t n = 0;
     for (uint32_t i = 0; i < cells->n_blocks; i++) {
         cells->first[i] = (uint32_t)n;
@@ -296,37 +296,37 @@ static void lay_out(const aset_cells *cells, aset_references *refs) {
 typedef void (*box_action)(build *b, const voxel_box *box);
 
 static void box_blocks(build *b, const voxel_box *box) {
-    cells_mark_blocks(b->cells, box);
+    aset_cells_mark_blocks(b->cells, box);
 }
 
 static void box_marks(build *b, const voxel_box *box) {
-    cells_mark(b->cells, box);
+    aset_cells_mark(b->cells, box);
 }
 
 static void box_counts(build *b, const voxel_box *box) {
-    cells_each_block(b->cells, box, count_references, b);
+    aset_cells_each_block(b->cells, box, count_references, b);
 }
 
 static void box_places(build *b, const voxel_box *box) {
-    cells_each_block(b->cells, box, place_references, b);
+    aset_cells_each_block(b->cells, box, place_references, b);
 }
 
 static void each_box(build *b, const aset_scene *scene, const aset_slices *slices, box_action act) {
     for (b->object = 0; b->object < scene->counts.objects; b->object++) {
-        voxel_box box = slices_object_box(slices, scene, b->object);
+        voxel_box box = aset_slices_object_box(slices, scene, b->object);
         act(b, &box);
     }
 }
 
-void cells_build(aset_cells *cells, aset_references *references, const aset_scene *scene, const aset_slices *slices,
-                 const aset_space_size *size, uint32_t faces, aset_arena *arena) {
+void aset_cells_build(aset_cells *cells, aset_references *references, const aset_scene *scene, const aset_slices *slices,
+                      const aset_space_size *size, uint32_t faces, aset_arena *arena) {
     build b = {cells, references, 0};
-    cells_take_map(cells, slices, faces, arena);
+    aset_cells_take_map(cells, slices, faces, arena);
     each_box(&b, scene, slices, box_blocks);
-    cells_rank_blocks(cells);
-    cells_take_marks(cells, arena);
+    aset_cells_rank_blocks(cells);
+    aset_cells_take_marks(cells, arena);
     each_box(&b, scene, slices, box_marks);
-    (void)cells_rank_marks(cells); /* no more cells than references, which measure has bounded */
+    (void)aset_cells_rank_marks(cells); /* no more cells than references, which measure has bounded */
 
     references->n = size->n_references;
     references->width = bits_width(scene->counts.objects);
@@ -340,7 +340,7 @@ void cells_build(aset_cells *cells, aset_references *references, const aset_scen
     each_box(&b, scene, slices, box_places);
 }
 
-void cells_each(const aset_references *references, cell_look look, void *context) {
+void aset_cells_each(const aset_references *references, cell_look look, void *context) {
     uint32_t cell = 0;
     for (uint32_t at = 0; at < references->n; at++) {
         uint32_t object = bits_get(references->objects, references->width, at);

@@ -58,39 +58,39 @@ static inline voxel_box cells_face_box(const voxel_box *box, uint32_t face) {
  * or the whole box for faces = 1. Works in scratch, a bitmap of as many blocks at a time as fit; at least 8 bytes.
  * ASET_ERR_LIMIT: more than 2^32 - 2 of any.
  */
-aset_status cells_measure(const aset_scene *scene, const aset_slices *slices, uint32_t faces, uint64_t *scratch,
-                          size_t scratch_bytes, aset_space_size *size);
+aset_status aset_cells_measure(const aset_scene *scene, const aset_slices *slices, uint32_t faces, uint64_t *scratch,
+                               size_t scratch_bytes, aset_space_size *size);
 
 /* All cells of so many voxels, empty ones included: for faces = 6 the cell sides, 2 sum of (n_a + 1) n_b n_c. */
-uint64_t cells_in_all(const uint32_t n[3], uint32_t faces);
+uint64_t aset_cells_in_all(const uint32_t n[3], uint32_t faces);
 
 /* The cells that refer to an object of this box. */
-uint64_t cells_references(const voxel_box *box, uint32_t faces);
+uint64_t aset_cells_references(const voxel_box *box, uint32_t faces);
 
 /* Called for every block that an object's box marks, with the marks it sets there. */
 typedef void (*cells_action)(void *context, uint32_t block, uint64_t marks);
 
-void cells_each_block(const aset_cells *cells, const voxel_box *box, cells_action act, void *context);
+void aset_cells_each_block(const aset_cells *cells, const voxel_box *box, cells_action act, void *context);
 
 /*
  * Building, step by step, of boxes in any order, each step with all boxes: the map (cleared) and its blocks; when those have
  * their ranks, the marks (cleared), and when they are set, dense numbers. Both takes want an arena that holds
- * ASET_BYTES_CELLS: the first that of 0 blocks, the second the rest. cells_rank_marks is false, and n_cells wrong, if that
+ * ASET_BYTES_CELLS: the first that of 0 blocks, the second the rest. aset_cells_rank_marks is false, and n_cells wrong, if that
  * exceeds 2^32 - 2.
  */
-void cells_take_map(aset_cells *cells, const aset_slices *slices, uint32_t faces, aset_arena *arena);
-void cells_mark_blocks(aset_cells *cells, const voxel_box *box);
-void cells_rank_blocks(aset_cells *cells);
-void cells_take_marks(aset_cells *cells, aset_arena *arena);
-void cells_mark(aset_cells *cells, const voxel_box *box); /* in blocks that are marked; others stay as they are */
-bool cells_rank_marks(aset_cells *cells);
+void aset_cells_take_map(aset_cells *cells, const aset_slices *slices, uint32_t faces, aset_arena *arena);
+void aset_cells_mark_blocks(aset_cells *cells, const voxel_box *box);
+void aset_cells_rank_blocks(aset_cells *cells);
+void aset_cells_take_marks(aset_cells *cells, aset_arena *arena);
+void aset_cells_mark(aset_cells *cells, const voxel_box *box); /* in blocks that are marked; others stay as they are */
+bool aset_cells_rank_marks(aset_cells *cells);
 
 /* Makes marks and references of the counts that measure gave, in an arena that holds them. */
-void cells_build(aset_cells *cells, aset_references *references, const aset_scene *scene, const aset_slices *slices,
-                 const aset_space_size *size, uint32_t faces, aset_arena *arena);
+void aset_cells_build(aset_cells *cells, aset_references *references, const aset_scene *scene, const aset_slices *slices,
+                      const aset_space_size *size, uint32_t faces, aset_arena *arena);
 
 /* Looks at every cell, in dense order: for aset_method.each_cell. */
-void cells_each(const aset_references *references, cell_look look, void *context);
+void aset_cells_each(const aset_references *references, cell_look look, void *context);
 
 /* Where the references of the cell at place in non-empty block number rank begin. */
 static inline uint32_t references_begin(const aset_references *references, uint32_t rank, uint64_t marks,

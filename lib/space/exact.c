@@ -22,7 +22,7 @@ static aset_real visit_exact(walk_request *walk, const walk_cell *cell) {
     exact_query *q = (exact_query *)walk; /* walk is its first member */
     for (uint32_t i = 0; i < cell->n; i++) {
         uint32_t object = cell->objects[i];
-        aset_real t = object_nearest(q->scene, object, q->ray, q->end);
+        aset_real t = aset_object_nearest(q->scene, object, q->ray, q->end);
         q->tests++;
         bool counts = t + q->moved < q->t_max;
         bool nearer = counts && (t < q->best || (t == q->best && object < q->object)); /* ASET_NO_OBJECT is the largest */
@@ -66,7 +66,7 @@ static uint32_t exact_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 
                            aset_statistics *statistics) {
     probe ray;
     exact_query q;
-    aset_real moved = approach_ready(&ray, tracer->scene, origin, direction);
+    aset_real moved = aset_approach_ready(&ray, tracer->scene, origin, direction);
     bool found = exact(&q, tracer, &ray, moved, t_max * tracer->scene->scale, false, statistics);
     hit->near = probe_origin(&ray);
     hit->t_near = q.best;
@@ -75,7 +75,7 @@ static uint32_t exact_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 
     hit->curtailed = false;
     hit->cover = 1;
     hit->scene = tracer->scene;
-    hit->by = &exact_answers;
+    hit->by = &aset_exact_answers;
     answers_to_caller(hit, tracer->scene);
     return found;
 }
@@ -85,14 +85,15 @@ static bool exact_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 dir
     (void)t_last;
     probe ray;
     exact_query q;
-    aset_real moved = approach_ready(&ray, tracer->scene, origin, direction);
+    aset_real moved = aset_approach_ready(&ray, tracer->scene, origin, direction);
     return exact(&q, tracer, &ray, moved, t_max * tracer->scene->scale, true, statistics);
 }
 
 static void exact_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit) {
     (void)own, (void)tracer;
-    object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal, &surface->geometric);
+    aset_object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal,
+                        &surface->geometric);
     surface->material = shape_of(hit->scene, hit->object).material;
 }
 
-const struct aset_answers exact_answers = {false, exact_meet, exact_any, exact_surface, NULL};
+const struct aset_answers aset_exact_answers = {false, exact_meet, exact_any, exact_surface, NULL};

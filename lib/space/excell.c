@@ -75,7 +75,7 @@ static void excell_leaf(void *context, uint32_t number, const voxel_box *region,
 
 static halving excell_halving(const aset_space_size *size, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
                               uint64_t room, excell_pass *pass) {
-    halving h = halving_make(size, 2, boxes, n_objects, lists, room);
+    halving h = aset_halving_make(size, 2, boxes, n_objects, lists, room);
     pass->full[0] = pass->full[1] = pass->full[2] = size->depth;
     h.context = pass;
     h.inner = excell_inner;
@@ -90,17 +90,17 @@ static aset_status excell_measure(aset_space_size *size, const aset_scene *scene
     excell_pass pass;
     memset(&pass, 0, sizeof pass);
     finest[0] = finest[1] = finest[2] = 1u << size->depth;
-    slices_make(&slices, scene, finest);
+    aset_slices_make(&slices, scene, finest);
     size_t boxes_bytes = ASET_ROUND((size_t)n * sizeof(aset_box));
     size->scratch = boxes_bytes + ASET_ROUND((size_t)n * 4 * (3 * size->depth + 1));
     if (scratch_bytes < boxes_bytes) {
         return ASET_ERR_NOMEM;
     }
     aset_box *boxes = (aset_box *)(void *)scratch;
-    boxes_fill(boxes, &slices, scene);
+    aset_boxes_fill(boxes, &slices, scene);
     halving h = excell_halving(size, boxes, n, (uint32_t *)(void *)((unsigned char *)scratch + boxes_bytes),
                                (scratch_bytes - boxes_bytes) / 4, &pass);
-    if (halve(&h) != ASET_OK) {
+    if (aset_halving_run(&h) != ASET_OK) {
         return ASET_ERR_NOMEM;
     }
     if (pass.references > UINT32_MAX - 2) {
@@ -127,8 +127,8 @@ static void excell_build(aset_space *space, const aset_space_size *size, aset_ar
     aset_slices fine;
     memset(&pass, 0, sizeof pass);
     pass.space = space;
-    slices_make(&fine, space->scene, finest);
-    slices_make(&space->slices, space->scene, size->divisions);
+    aset_slices_make(&fine, space->scene, finest);
+    aset_slices_make(&space->slices, space->scene, size->divisions);
     while (1u << space->depth < size->n_nodes) {
         space->depth++;
     }
@@ -137,14 +137,14 @@ static void excell_build(aset_space *space, const aset_space_size *size, aset_ar
     space->directory =
         aset_arena_alloc(arena, (size_t)ASET_BYTES_PACKED(size->n_nodes, space->directory_width), ASET_CATEGORY_CELLS);
     space->bucket_depth = aset_arena_alloc(arena, size->n_leaves, ASET_CATEGORY_CELLS);
-    leaves_reserve(space, size, arena);
-    boxes_fill(space->boxes, &fine, space->scene);
+    aset_leaves_reserve(space, size, arena);
+    aset_boxes_fill(space->boxes, &fine, space->scene);
     aset_mark mark = aset_arena_mark(arena);
     uint32_t *lists = aset_arena_alloc(arena, size->scratch, ASET_CATEGORY_SCRATCH);
     halving h = excell_halving(size, space->boxes, n, lists, size->listed, &pass);
-    (void)halve(&h); /* the lists have the room that measuring found */
+    (void)aset_halving_run(&h); /* the lists have the room that measuring found */
     aset_arena_release(arena, &mark);
-    boxes_fill(space->boxes, &space->slices, space->scene); /* of the directory's cells, which the ray walks */
+    aset_boxes_fill(space->boxes, &space->slices, space->scene); /* of the directory's cells, which the ray walks */
     space->structure.interior = size->n_leaves - 1;
     space->structure.leaves = size->n_leaves;
     space->structure.nonempty = size->n_cells;
@@ -166,7 +166,7 @@ static leaf excell_find(const aset_space *space, const int32_t voxel[3]) {
 }
 
 static void excell_go(const aset_space *space, const probe *ray, walk_request *walk) {
-    leaves_go(space, ray, walk, excell_find, false);
+    aset_leaves_go(space, ray, walk, excell_find, false);
 }
 
-const aset_method aset_excell = {"excell", true, 0, excell_measure, excell_build, excell_go, leaves_each};
+const aset_method aset_excell = {"excell", true, 0, excell_measure, excell_build, excell_go, aset_leaves_each};

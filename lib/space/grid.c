@@ -15,18 +15,18 @@
 static aset_status grid_measure(aset_space_size *size, const aset_scene *scene, uint64_t *scratch,
                                 size_t scratch_bytes) {
     aset_slices slices;
-    slices_make(&slices, scene, size->divisions);
-    aset_status status = cells_measure(scene, &slices, 1, scratch, scratch_bytes, size);
+    aset_slices_make(&slices, scene, size->divisions);
+    aset_status status = aset_cells_measure(scene, &slices, 1, scratch, scratch_bytes, size);
     size->references += ASET_ROUND(scene->counts.objects * sizeof(aset_box));
     return status;
 }
 
 static void grid_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
-    slices_make(&space->slices, space->scene, size->divisions);
-    cells_build(&space->cells, &space->references, space->scene, &space->slices, size, 1, arena);
+    aset_slices_make(&space->slices, space->scene, size->divisions);
+    aset_cells_build(&space->cells, &space->references, space->scene, &space->slices, size, 1, arena);
     space->boxes = aset_arena_alloc(arena, space->scene->counts.objects * sizeof(aset_box), ASET_CATEGORY_REFERENCES);
-    boxes_fill(space->boxes, &space->slices, space->scene);
-    space->structure.leaves = cells_in_all(size->divisions, 1);
+    aset_boxes_fill(space->boxes, &space->slices, space->scene);
+    space->structure.leaves = aset_cells_in_all(size->divisions, 1);
     space->structure.nonempty = space->cells.n_cells;
     space->structure.references = space->references.n;
 }
@@ -74,11 +74,11 @@ static void grid_go(const aset_space *space, const probe *ray, walk_request *wal
         return;
     }
 #endif
-    if (cells->n_cells == 0 || (!dda_inside(&way, slices, ray) && !dda_enter(&way, slices, ray, &whole)) ||
+    if (cells->n_cells == 0 || (!aset_dda_inside(&way, slices, ray) && !aset_dda_enter(&way, slices, ray, &whole)) ||
         way.t > walk->limit) {
         return;
     }
-    brick_begin(&bricks, cells, slices, ray, &way);
+    aset_brick_begin(&bricks, cells, slices, ray, &way);
     bool inside = true, known = true;
     uint64_t n_cells = 1;
     while (inside && way.t <= walk->limit) {
@@ -88,7 +88,7 @@ static void grid_go(const aset_space *space, const probe *ray, walk_request *wal
             known = false;
             continue;
         }
-        n_cells += known ? 0 : brick_land(&bricks, slices, ray, &way);
+        n_cells += known ? 0 : aset_brick_land(&bricks, slices, ray, &way);
         known = true;
         uint64_t marks = cells->marks[rank];
         bool left;
@@ -105,11 +105,11 @@ static void grid_go(const aset_space *space, const probe *ray, walk_request *wal
             inside = brick_cross(&bricks, slices, ray, &way, way.axis);
         }
     }
-    walk->cells += n_cells + (known ? 0 : brick_count_rest(slices, ray, &way, inside, walk->limit));
+    walk->cells += n_cells + (known ? 0 : aset_brick_count_rest(slices, ray, &way, inside, walk->limit));
 }
 
 static void grid_each_cell(const aset_space *space, cell_look look, void *context) {
-    cells_each(&space->references, look, context);
+    aset_cells_each(&space->references, look, context);
 }
 
 const aset_method aset_grid = {"grid", false, 1, grid_measure, grid_build, grid_go, grid_each_cell};

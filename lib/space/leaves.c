@@ -12,7 +12,7 @@ static void visit_leaf(const aset_space *space, const probe *ray, walk_request *
     cell->n = 0;
     for (uint32_t at = begin; at < end; at++) {
         uint32_t object = bits_get(refs->objects, refs->width, at);
-        if (stay_enters(s, &space->slices, ray, space->boxes + object)) {
+        if (aset_stay_enters(s, &space->slices, ray, space->boxes + object)) {
             cell->objects[cell->n++] = object;
         }
         if (cell->n == WALK_BATCH || (at + 1 == end && cell->n > 0)) {
@@ -48,22 +48,22 @@ static bool leave_leaf(dda *way, const aset_slices *slices, const probe *ray, co
     if (next == way->end[a]) {
         return false;
     }
-    (void)dda_land(way, slices, ray, &window);
+    (void)aset_dda_land(way, slices, ray, &window);
     return true;
 }
 
-void leaves_go(const aset_space *space, const probe *ray, walk_request *walk, leaf_find find, bool by_steps) {
+void aset_leaves_go(const aset_space *space, const probe *ray, walk_request *walk, leaf_find find, bool by_steps) {
     const aset_slices *slices = &space->slices;
     voxel_box whole = slices_whole(slices);
     dda way;
-    if (space->cells.n_cells == 0 || (!dda_inside(&way, slices, ray) && !dda_enter(&way, slices, ray, &whole))) {
+    if (space->cells.n_cells == 0 || (!aset_dda_inside(&way, slices, ray) && !aset_dda_enter(&way, slices, ray, &whole))) {
         return;
     }
     bool inside = true;
     while (inside && way.t <= walk->limit) {
         leaf l = find(space, way.voxel);
         stay s;
-        stay_make(&s, &way, slices, ray, &l.voxels);
+        aset_stay_make(&s, &way, slices, ray, &l.voxels);
         walk->cells++;
         if (l.cell != NO_CELL && (walk->wants_references || way.t > 0)) {
             walk_cell cell;
@@ -83,7 +83,7 @@ void leaves_go(const aset_space *space, const probe *ray, walk_request *walk, le
     }
 }
 
-void leaves_each(const aset_space *space, cell_look look, void *context) {
+void aset_leaves_each(const aset_space *space, cell_look look, void *context) {
     const aset_references *refs = &space->references;
     for (uint32_t cell = 0; cell < space->cells.n_cells; cell++) {
         for (uint32_t at = refs->first[cell]; at < refs->first[cell + 1]; at++) {
@@ -93,7 +93,7 @@ void leaves_each(const aset_space *space, cell_look look, void *context) {
     }
 }
 
-void leaves_reserve(aset_space *space, const aset_space_size *size, aset_arena *arena) {
+void aset_leaves_reserve(aset_space *space, const aset_space_size *size, aset_arena *arena) {
     uint32_t n = space->scene->counts.objects;
     aset_references *refs = &space->references;
     space->cells.n_cells = size->n_cells;
@@ -104,8 +104,8 @@ void leaves_reserve(aset_space *space, const aset_space_size *size, aset_arena *
     space->boxes = aset_arena_alloc(arena, (size_t)n * sizeof(aset_box), ASET_CATEGORY_REFERENCES);
 }
 
-halving halving_make(const aset_space_size *size, int ways, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
-                     uint64_t room) {
+halving aset_halving_make(const aset_space_size *size, int ways, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
+                          uint64_t room) {
     halving h;
     memset(&h, 0, sizeof h);
     h.boxes = boxes;
@@ -160,7 +160,7 @@ static aset_status list_child(halving *h, const level *parent, level *child, uin
     return ASET_OK;
 }
 
-aset_status halve(halving *h) {
+aset_status aset_halving_run(halving *h) {
     level levels[HALVINGS_MAX + 1];
     uint32_t depth = 0;
     h->deepest = h->n_objects;

@@ -20,13 +20,13 @@ typedef leaf (*leaf_find)(const aset_space *space, const int32_t voxel[3]);
  * Walks. by_steps: the next leaf is found by crossing the finest level's slices one by one (ARTS); else by going straight to
  * the crossing that leaves the leaf (Glassner's next point).
  */
-void leaves_go(const aset_space *space, const probe *ray, walk_request *walk, leaf_find find, bool by_steps);
+void aset_leaves_go(const aset_space *space, const probe *ray, walk_request *walk, leaf_find find, bool by_steps);
 
 /* Looks at every leaf that is not empty: for aset_method.each_cell. */
-void leaves_each(const aset_space *space, cell_look look, void *context);
+void aset_leaves_each(const aset_space *space, cell_look look, void *context);
 
 /* Takes the references of leaves, and the objects' boxes, from the arena: ASET_BYTES_LEAVES. */
-void leaves_reserve(aset_space *space, const aset_space_size *size, aset_arena *arena);
+void aset_leaves_reserve(aset_space *space, const aset_space_size *size, aset_arena *arena);
 
 /* --- building by halving --- */
 
@@ -53,11 +53,11 @@ typedef struct halving {
  * A halving within the size's limits, of a whole of 2^depth voxels along each axis; in turn (ways 2), three halvings make a level.
  * What is called for regions and leaves is still to be set.
  */
-halving halving_make(const aset_space_size *size, int ways, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
-                     uint64_t room);
+halving aset_halving_make(const aset_space_size *size, int ways, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
+                          uint64_t room);
 
 /* ASET_ERR_NOMEM if the lists need more room. Halvings nest as deep as depth: the stack here is of fixed size. */
-aset_status halve(halving *h);
+aset_status aset_halving_run(halving *h);
 
 #define HALVINGS_MAX 30 /* the depth of ten octree levels, in single halvings */
 

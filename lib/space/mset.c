@@ -7,15 +7,15 @@
 static aset_status mset_measure(aset_space_size *size, const aset_scene *scene, uint64_t *scratch,
                                 size_t scratch_bytes) {
     aset_slices slices;
-    slices_make(&slices, scene, size->divisions);
-    return sides_measure(size, scene, &slices, scratch, scratch_bytes);
+    aset_slices_make(&slices, scene, size->divisions);
+    return aset_sides_measure(size, scene, &slices, scratch, scratch_bytes);
 }
 
 static void mset_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
-    slices_make(&space->slices, space->scene, size->divisions);
-    sides_build(space, size, arena);
+    aset_slices_make(&space->slices, space->scene, size->divisions);
+    aset_sides_build(space, size, arena);
 }
 
 SIDES_GO(mset_go, true)
 
-const aset_method aset_mset = {"mset", false, 6, mset_measure, mset_build, mset_go, sides_each};
+const aset_method aset_mset = {"mset", false, 6, mset_measure, mset_build, mset_go, aset_sides_each};

@@ -12,7 +12,7 @@
 #include "space/tree.h"
 
 static void octree_go(const aset_space *space, const probe *ray, walk_request *walk) {
-    leaves_go(space, ray, walk, tree_find, false);
+    aset_leaves_go(space, ray, walk, aset_tree_find, false);
 }
 
-const aset_method aset_octree = {"octree", true, 0, tree_measure, tree_build, octree_go, leaves_each};
+const aset_method aset_octree = {"octree", true, 0, aset_tree_measure, aset_tree_build, octree_go, aset_leaves_each};

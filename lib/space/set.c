@@ -46,7 +46,7 @@ static size_t collect_extents(aset_real *extents, const aset_scene *scene, int a
     size_t n = 0, n_objects = scene->counts.objects;
     for (uint32_t i = 0; i < n_objects; i++) {
         aset_vec3 low, high;
-        object_bounds(scene, i, &low, &high);
+        aset_object_own_bounds(scene, i, &low, &high);
         extents[2 * i] = slices_grown_low(scene, vec_at(&low, a));
         extents[2 * i + 1] = slices_grown_high(scene, vec_at(&high, a));
     }
@@ -89,7 +89,7 @@ static bool make_slices(aset_slices *slices, const aset_scene *scene, const uint
                         aset_real *extents, uint64_t *merged) {
     const uint32_t one[3] = {1, 1, 1};
     aset_slices volume;
-    slices_make(&volume, scene, one);
+    aset_slices_make(&volume, scene, one);
     *slices = volume;
     *merged = 0;
     for (int a = 0; a < 3; a++) {
@@ -132,8 +132,8 @@ static aset_status set_measure(aset_space_size *size, const aset_scene *scene, u
     memcpy(size->divisions, slices.n, sizeof size->divisions);
     size->planes = planes_bytes(size->divisions);
     size_t behind = room > size->planes ? room - size->planes : 0;
-    aset_status status = behind > extents ? sides_measure(size, scene, &slices, planes + size->planes / 8, behind)
-                                          : sides_measure(size, scene, &slices, scratch, extents);
+    aset_status status = behind > extents ? aset_sides_measure(size, scene, &slices, planes + size->planes / 8, behind)
+                                          : aset_sides_measure(size, scene, &slices, scratch, extents);
     size_t sides = size->cells + size->references + size->voxels;
     size->cells += size->planes;
     size->scratch = extents;
@@ -148,9 +148,9 @@ static void set_build(aset_space *space, const aset_space_size *size, aset_arena
     (void)make_slices(&space->slices, space->scene, size->caps, planes, size->planes / sizeof(aset_real), extents,
                       &space->structure.merged);
     aset_arena_release(arena, &mark);
-    sides_build(space, size, arena);
+    aset_sides_build(space, size, arena);
 }
 
 SIDES_GO(set_go, false)
 
-const aset_method aset_set = {"set", false, 0, set_measure, set_build, set_go, sides_each};
+const aset_method aset_set = {"set", false, 0, set_measure, set_build, set_go, aset_sides_each};

@@ -28,10 +28,10 @@
 
 #define FACES 6u
 
-aset_status sides_measure(aset_space_size *size, const aset_scene *scene, const aset_slices *slices, uint64_t *scratch,
-                          size_t scratch_bytes) {
+aset_status aset_sides_measure(aset_space_size *size, const aset_scene *scene, const aset_slices *slices, uint64_t *scratch,
+                               size_t scratch_bytes) {
     size->voxels = ASET_ROUND(ASET_LARGE_MAX * sizeof(aset_large));
-    return cells_measure(scene, slices, FACES, scratch, scratch_bytes, size);
+    return aset_cells_measure(scene, slices, FACES, scratch, scratch_bytes, size);
 }
 
 /* The voxels that a box spans along its longest axis. */
@@ -60,7 +60,7 @@ static uint32_t smallest_of(const uint32_t *spans, uint32_t n) {
 static void find_large(aset_space *space) {
     uint32_t spans[ASET_LARGE_MAX], objects[ASET_LARGE_MAX], n = 0, rest = 1;
     for (uint32_t i = 0; i < space->scene->counts.objects; i++) {
-        voxel_box box = slices_object_box(&space->slices, space->scene, i);
+        voxel_box box = aset_slices_object_box(&space->slices, space->scene, i);
         uint32_t span = box_span(&box), at = n;
         if (n == ASET_LARGE_MAX) {
             at = smallest_of(spans, n);
@@ -82,7 +82,7 @@ static void find_large(aset_space *space) {
     rest = rest < 2 ? 2 : rest;
     for (uint32_t i = 0; i < n; i++) {
         if (spans[i] > rest) {
-            voxel_box box = slices_object_box(&space->slices, space->scene, objects[i]);
+            voxel_box box = aset_slices_object_box(&space->slices, space->scene, objects[i]);
             aset_large *large = space->large + space->n_large++;
             large->object = objects[i];
             for (int a = 0; a < 3; a++) {
@@ -94,11 +94,11 @@ static void find_large(aset_space *space) {
     space->reach[0] = space->reach[1] = space->reach[2] = rest;
 }
 
-void sides_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
-    cells_build(&space->cells, &space->references, space->scene, &space->slices, size, FACES, arena);
+void aset_sides_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
+    aset_cells_build(&space->cells, &space->references, space->scene, &space->slices, size, FACES, arena);
     space->large = aset_arena_alloc(arena, size->voxels, ASET_CATEGORY_VOXELS);
     find_large(space);
-    space->structure.leaves = cells_in_all(size->divisions, FACES);
+    space->structure.leaves = aset_cells_in_all(size->divisions, FACES);
     space->structure.nonempty = space->cells.n_cells;
     space->structure.references = space->references.n;
 }
@@ -171,11 +171,11 @@ static voxel_box window_around(const aset_space *space, const int32_t voxel[3]) 
 /* Puts the walk at its first cell. False: there is none. */
 static bool sides_begin(const aset_space *space, const probe *ray, walk_request *walk, dda *way, uint32_t *held) {
     voxel_box window = slices_whole(&space->slices);
-    if (dda_inside(way, &space->slices, ray)) {
+    if (aset_dda_inside(way, &space->slices, ray)) {
         walk->limit = visit_large(space, way->voxel, walk, held);
         window = window_around(space, way->voxel);
     }
-    return dda_enter(way, &space->slices, ray, &window);
+    return aset_dda_enter(way, &space->slices, ray, &window);
 }
 
 /* The marks of one brick on the three faces that a ray can enter by, and where their references and dense numbers are. */
@@ -222,7 +222,7 @@ static aset_real visit_side(const aset_space *space, walk_request *walk, const d
  * and the test of one bit of the marks at hand. Both levels cross slices in the same order, so this is the plain walk voxel
  * by voxel, with the empty part left out (tests/test_space.c walks the plain way beside it).
  */
-void sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
+void aset_sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
     const aset_cells *cells = &space->cells;
     const aset_slices *slices = &space->slices;
     const uint32_t faces[3] = {ray->direction[0] < 0, 2 + (ray->direction[1] < 0), 4 + (ray->direction[2] < 0)};
@@ -233,7 +233,7 @@ void sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
     if (cells->n_cells == 0 || !sides_begin(space, ray, walk, &way, &held) || way.t > walk->limit) {
         return;
     }
-    brick_begin(&bricks, cells, slices, ray, &way);
+    aset_brick_begin(&bricks, cells, slices, ray, &way);
     bool inside = true, known = true; /* known: way stands where the ray enters the brick */
     uint64_t n_cells = 1, n_nonempty = 0;
     aset_real limit = walk->limit; /* kept here, for a visit may change what walk points to */
@@ -243,7 +243,7 @@ void sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
             known = false;
             continue;
         }
-        n_cells += known ? 0 : brick_land(&bricks, slices, ray, &way);
+        n_cells += known ? 0 : aset_brick_land(&bricks, slices, ray, &way);
         known = true;
         brick b;
         bool left;
@@ -262,9 +262,9 @@ void sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
         }
     }
     walk->nonempty += n_nonempty;
-    walk->cells += n_cells + (known ? 0 : brick_count_rest(slices, ray, &way, inside, limit));
+    walk->cells += n_cells + (known ? 0 : aset_brick_count_rest(slices, ray, &way, inside, limit));
 }
 
-void sides_each(const aset_space *space, cell_look look, void *context) {
-    cells_each(&space->references, look, context);
+void aset_sides_each(const aset_space *space, cell_look look, void *context) {
+    aset_cells_each(&space->references, look, context);
 }

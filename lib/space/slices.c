@@ -15,7 +15,7 @@
 #define AUTO_DIVISIONS_MAX 512
 #define AUTO_THIN R(0.001)
 
-void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]) {
+void aset_slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]) {
     aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
     aset_real margin = REAL_UNIT;
     if (scene->margin > 0) {
@@ -48,13 +48,13 @@ static aset_real cube_root(aset_real x) {
 /* The least steps between neighbouring coordinates that a scene must be long; or it is one point, which needs none. */
 #define STEPS_LEAST 64
 
-bool slices_precise(const aset_scene *scene) {
+bool aset_slices_precise(const aset_scene *scene) {
     aset_real size = vec_largest(vec_sub(scene->high, scene->low));
     aset_real largest = real_max(vec_largest(scene->low), vec_largest(scene->high));
     return !(scene->margin > 0) || size == 0 || size >= STEPS_LEAST * 2 * REAL_UNIT * largest;
 }
 
-void slices_auto_divisions(const aset_scene *scene, uint32_t n_objects, size_t budget, uint32_t divisions[3]) {
+void aset_slices_auto_divisions(const aset_scene *scene, uint32_t n_objects, size_t budget, uint32_t divisions[3]) {
     aset_vec3 low = vec(0, 0, 0), high = vec(1, 1, 1);
     aset_scene_bounds(scene, &low, &high);
     aset_vec3 span = vec_sub(high, low);
@@ -76,7 +76,7 @@ void slices_auto_divisions(const aset_scene *scene, uint32_t n_objects, size_t b
     }
 }
 
-bool slices_coarsen(uint32_t divisions[3], bool far_off) {
+bool aset_slices_coarsen(uint32_t divisions[3], bool far_off) {
     uint32_t *n = divisions;
     if (n[0] == 1 && n[1] == 1 && n[2] == 1) {
         return false;
@@ -88,7 +88,7 @@ bool slices_coarsen(uint32_t divisions[3], bool far_off) {
     return true;
 }
 
-/* slices_locate in a table of slices, by halving it. */
+/* aset_slices_locate in a table of slices, by halving it. */
 static int32_t locate_in_table(const aset_real *planes, int32_t last, aset_real x) {
     int32_t low = 0, high = last;
     while (low < high) {
@@ -102,19 +102,19 @@ static int32_t locate_in_table(const aset_real *planes, int32_t last, aset_real 
     return low;
 }
 
-int32_t slices_locate(const aset_slices *slices, int a, aset_real x) {
+int32_t aset_slices_locate(const aset_slices *slices, int a, aset_real x) {
     if (slices->planes[a] != NULL) {
         return locate_in_table(slices->planes[a], (int32_t)slices->n[a] - 1, x);
     }
     return slices_locate_even(slices, a, x);
 }
 
-voxel_box slices_box(const aset_slices *slices, const aset_scene *scene, aset_vec3 low, aset_vec3 high) {
+voxel_box aset_slices_box(const aset_slices *slices, const aset_scene *scene, aset_vec3 low, aset_vec3 high) {
     voxel_box box;
     for (int a = 0; a < 3; a++) {
         aset_real end = slices_grown_high(scene, vec_at(&high, a));
-        box.low[a] = slices_locate(slices, a, slices_grown_low(scene, vec_at(&low, a)));
-        box.high[a] = slices_locate(slices, a, end);
+        box.low[a] = aset_slices_locate(slices, a, slices_grown_low(scene, vec_at(&low, a)));
+        box.high[a] = aset_slices_locate(slices, a, end);
         if (box.high[a] > box.low[a] && slices_plane(slices, a, box.high[a]) == end) {
             box.high[a]--; /* a slice at the very end of the box (SET) closes it: what is hit lies a margin before it */
         }
@@ -122,10 +122,10 @@ voxel_box slices_box(const aset_slices *slices, const aset_scene *scene, aset_ve
     return box;
 }
 
-voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object) {
+voxel_box aset_slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object) {
     aset_vec3 low, high;
-    object_bounds(scene, object, &low, &high);
-    return slices_box(slices, scene, low, high);
+    aset_object_own_bounds(scene, object, &low, &high);
+    return aset_slices_box(slices, scene, low, high);
 }
 
 /* Prepares steps and ends; nothing that depends on where the walk begins. */
@@ -153,7 +153,7 @@ static bool crossed(const aset_slices *slices, const probe *ray, int b, int32_t 
 static bool settle(const aset_slices *slices, const probe *ray, int b, aset_real t, int axis, const voxel_box *window,
                    int32_t *voxel) {
     aset_real x = ray->origin[b] + t * ray->direction[b];
-    int32_t k = slices->planes[b] == NULL ? slices_guess(slices, b, x) : slices_locate(slices, b, x);
+    int32_t k = slices->planes[b] == NULL ? slices_guess(slices, b, x) : aset_slices_locate(slices, b, x);
     int up = ray->direction[b] > 0;
     int32_t step = up ? 1 : -1, entry = up ? 0 : 1; /* a voxel's entry slice is k + entry, its exit k + 1 - entry */
     k = k < window->low[b] ? window->low[b] : k > window->high[b] ? window->high[b] : k;
@@ -178,11 +178,11 @@ static bool stand(const aset_slices *slices, const probe *ray, int a, const voxe
     if (x < slices->first[a] || x > slices->last[a]) {
         return false;
     }
-    *voxel = slices_locate(slices, a, x);
+    *voxel = aset_slices_locate(slices, a, x);
     return *voxel >= window->low[a] && *voxel <= window->high[a];
 }
 
-bool dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window) {
+bool aset_dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window) {
     dda_prepare(walk, slices, ray);
     aset_real t = -REAL_INFINITY, t_out = REAL_INFINITY;
     int axis = -1;
@@ -221,7 +221,7 @@ bool dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const vox
     return true;
 }
 
-bool slices_voxel(const aset_slices *slices, const probe *ray, int32_t voxel[3]) {
+bool aset_slices_voxel(const aset_slices *slices, const probe *ray, int32_t voxel[3]) {
     const aset_real *at = ray->origin;
     if (at[0] < slices->first[0] || at[0] > slices->last[0] || at[1] < slices->first[1] || at[1] > slices->last[1] ||
         at[2] < slices->first[2] || at[2] > slices->last[2]) {
@@ -238,8 +238,8 @@ bool slices_voxel(const aset_slices *slices, const probe *ray, int32_t voxel[3])
     return true;
 }
 
-bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray) {
-    if (!slices_voxel(slices, ray, walk->voxel)) {
+bool aset_dda_inside(dda *walk, const aset_slices *slices, const probe *ray) {
+    if (!aset_slices_voxel(slices, ray, walk->voxel)) {
         return false;
     }
     dda_prepare(walk, slices, ray);
@@ -251,7 +251,7 @@ bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray) {
     return true;
 }
 
-uint32_t dda_land(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window) {
+uint32_t aset_dda_land(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window) {
     int32_t crossings = 0;
     for (int a = 0; a < 3; a++) {
         int32_t before = walk->voxel[a];

@@ -24,20 +24,20 @@ typedef struct voxel_box {
 /*
  * Cuts the scene's box, grown a little more than the boxes of objects will be. A scene without objects gets a unit cube.
  */
-void slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]);
+void aset_slices_make(aset_slices *slices, const aset_scene *scene, const uint32_t divisions[3]);
 
 /* The voxels that the grown box of an object from low to high touches: its expanded box in the paper's words. */
-voxel_box slices_box(const aset_slices *slices, const aset_scene *scene, aset_vec3 low, aset_vec3 high);
-voxel_box slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object);
+voxel_box aset_slices_box(const aset_slices *slices, const aset_scene *scene, aset_vec3 low, aset_vec3 high);
+voxel_box aset_slices_object_box(const aset_slices *slices, const aset_scene *scene, uint32_t object);
 
 /* Is the scene long enough, in the steps of its coordinates, to be cut? */
-bool slices_precise(const aset_scene *scene);
+bool aset_slices_precise(const aset_scene *scene);
 
 /* The rule of aset_auto_divisions, for a scene's box and so many objects. */
-void slices_auto_divisions(const aset_scene *scene, uint32_t n_objects, size_t budget, uint32_t divisions[3]);
+void aset_slices_auto_divisions(const aset_scene *scene, uint32_t n_objects, size_t budget, uint32_t divisions[3]);
 
 /* One step coarser, a large one if the need is far off. False: nothing is coarser. */
-bool slices_coarsen(uint32_t divisions[3], bool far_off);
+bool aset_slices_coarsen(uint32_t divisions[3], bool far_off);
 
 /* The ends of an object's box as the spaces see it: grown by twice the scene's margin. */
 static inline aset_real slices_grown_low(const aset_scene *scene, aset_real low) {
@@ -64,7 +64,7 @@ static inline aset_real slices_plane(const aset_slices *slices, int a, int32_t k
 }
 
 /* The voxel that holds x: the last one whose lower slice is not above x; the first or last for x outside. */
-int32_t slices_locate(const aset_slices *slices, int a, aset_real x);
+int32_t aset_slices_locate(const aset_slices *slices, int a, aset_real x);
 
 /* The voxel of x, or by rounding the one beside it, if all slices are equally far apart. */
 static inline int32_t slices_guess(const aset_slices *slices, int a, aset_real x) {
@@ -73,7 +73,7 @@ static inline int32_t slices_guess(const aset_slices *slices, int a, aset_real x
     return !(guess > 0) ? 0 : guess >= (aset_real)last ? last : (int32_t)guess;
 }
 
-/* slices_locate for these. */
+/* aset_slices_locate for these. */
 static inline int32_t slices_locate_even(const aset_slices *slices, int a, aset_real x) {
     aset_real low = slices->low[a], width = slices->width[a];
     int32_t last = (int32_t)slices->n[a] - 1, k = slices_guess(slices, a, x);
@@ -88,7 +88,7 @@ static inline int32_t slices_locate_even(const aset_slices *slices, int a, aset_
 }
 
 /* The voxel that a ray from its origin is in. False: the origin is outside the volume. */
-bool slices_voxel(const aset_slices *slices, const probe *ray, int32_t voxel[3]);
+bool aset_slices_voxel(const aset_slices *slices, const probe *ray, int32_t voxel[3]);
 
 typedef struct dda {
     int32_t voxel[3], step[3], end[3]; /* end: the voxel number with which the ray has left the volume */
@@ -105,10 +105,10 @@ static inline aset_real dda_crossing(const aset_slices *slices, const probe *ray
  * Puts the walk at the ray's entry into the window (a box of voxels within the volume), wherever on the ray's line that is:
  * the last crossing is the window's face. False if the line misses the window or leaves it before t = 0.
  */
-bool dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window);
+bool aset_dda_enter(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window);
 
 /* Puts the walk into the voxel of the ray's origin, before any crossing. False if the origin is outside the volume. */
-bool dda_inside(dda *walk, const aset_slices *slices, const probe *ray);
+bool aset_dda_inside(dda *walk, const aset_slices *slices, const probe *ray);
 
 /*
  * Crosses the next slice of axis a, which is a constant where this is called: so the walk's numbers can stay in registers.
@@ -137,6 +137,6 @@ static inline bool dda_step(dda *walk, const aset_slices *slices, const probe *r
  * box of voxels that the ray enters by that crossing, or axis = 3: after all crossings not behind t). The number of
  * crossings that the walk had not made yet.
  */
-uint32_t dda_land(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window);
+uint32_t aset_dda_land(dda *walk, const aset_slices *slices, const probe *ray, const voxel_box *window);
 
 #endif

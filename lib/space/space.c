@@ -14,14 +14,14 @@ const char *aset_method_name(const aset_method *method) {
 }
 
 void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisions[3]) {
-    slices_auto_divisions(scene, scene->counts.objects, budget, divisions);
+    aset_slices_auto_divisions(scene, scene->counts.objects, budget, divisions);
 }
 
 /* The options, checked; automatic ones are filled in. */
 static aset_status choose_size(aset_space_size *size, const aset_scene *scene, const aset_method *method,
                                const aset_space_options *options, const aset_arena *arena, bool *is_auto) {
     const uint32_t *n = size->divisions;
-    if (!slices_precise(scene)) {
+    if (!aset_slices_precise(scene)) {
         return ASET_ERR_PRECISION;
     }
     memset(size, 0, sizeof *size);
@@ -88,7 +88,7 @@ static bool shrink(aset_space_size *size, const aset_method *method, bool far_of
     if (size->caps[0] > 0) {
         memcpy(n, size->caps, sizeof size->caps); /* SET: what was asked for, not what was made of it */
     }
-    return slices_coarsen(n, far_off);
+    return aset_slices_coarsen(n, far_off);
 }
 
 /* Measures; automatic sizes are made smaller until everything fits. */
@@ -127,7 +127,7 @@ aset_status aset_space_build(aset_space *space, const aset_scene *scene, const a
     }
     memset(space, 0, sizeof *space);
     space->method = method;
-    space->answers = &exact_answers; /* here, so that a program without a space links none of it */
+    space->answers = &aset_exact_answers; /* here, so that a program without a space links none of it */
     space->scene = scene;
     memcpy(space->slices.n, size.divisions, sizeof size.divisions);
     method->build(space, &size, arena);

@@ -54,29 +54,29 @@ static void tree_leaf(void *context, uint32_t number, const voxel_box *region, u
 
 static halving tree_halving(const aset_space_size *size, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
                             uint64_t room, tree_pass *pass) {
-    halving h = halving_make(size, 8, boxes, n_objects, lists, room);
+    halving h = aset_halving_make(size, 8, boxes, n_objects, lists, room);
     h.context = pass;
     h.inner = tree_inner;
     h.leaf_made = tree_leaf;
     return h;
 }
 
-aset_status tree_measure(aset_space_size *size, const aset_scene *scene, uint64_t *scratch, size_t scratch_bytes) {
+aset_status aset_tree_measure(aset_space_size *size, const aset_scene *scene, uint64_t *scratch, size_t scratch_bytes) {
     aset_slices slices;
     uint32_t n = scene->counts.objects;
     tree_pass pass = {NULL, 1, 0, 0, 0};
     size->divisions[0] = size->divisions[1] = size->divisions[2] = 1u << size->depth;
-    slices_make(&slices, scene, size->divisions);
+    aset_slices_make(&slices, scene, size->divisions);
     size_t boxes_bytes = ASET_ROUND((size_t)n * sizeof(aset_box));
     size->scratch = boxes_bytes + ASET_ROUND((size_t)n * 4 * (size->depth + 1)); /* enough for any scene */
     if (scratch_bytes < boxes_bytes) {
         return ASET_ERR_NOMEM;
     }
     aset_box *boxes = (aset_box *)(void *)scratch;
-    boxes_fill(boxes, &slices, scene);
+    aset_boxes_fill(boxes, &slices, scene);
     halving h = tree_halving(size, boxes, n, (uint32_t *)(void *)((unsigned char *)scratch + boxes_bytes),
                              (scratch_bytes - boxes_bytes) / 4, &pass);
-    if (halve(&h) != ASET_OK) {
+    if (aset_halving_run(&h) != ASET_OK) {
         return ASET_ERR_NOMEM;
     }
     if (pass.references > UINT32_MAX - 2 || pass.nodes >= LEAF) {
@@ -93,18 +93,18 @@ aset_status tree_measure(aset_space_size *size, const aset_scene *scene, uint64_
     return ASET_OK;
 }
 
-void tree_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
+void aset_tree_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
     uint32_t n = space->scene->counts.objects;
     tree_pass pass = {space, 1, 0, 0, 0};
-    slices_make(&space->slices, space->scene, size->divisions);
+    aset_slices_make(&space->slices, space->scene, size->divisions);
     space->depth = size->depth;
     space->nodes = aset_arena_alloc(arena, (size_t)size->n_nodes * 4, ASET_CATEGORY_CELLS);
-    leaves_reserve(space, size, arena);
-    boxes_fill(space->boxes, &space->slices, space->scene);
+    aset_leaves_reserve(space, size, arena);
+    aset_boxes_fill(space->boxes, &space->slices, space->scene);
     aset_mark mark = aset_arena_mark(arena);
     uint32_t *lists = aset_arena_alloc(arena, size->scratch, ASET_CATEGORY_SCRATCH);
     halving h = tree_halving(size, space->boxes, n, lists, size->listed, &pass);
-    (void)halve(&h); /* the lists have the room that measuring found */
+    (void)aset_halving_run(&h); /* the lists have the room that measuring found */
     aset_arena_release(arena, &mark);
     space->structure.interior = (size->n_nodes - 1) / 8;
     space->structure.leaves = size->n_leaves;
@@ -112,7 +112,7 @@ void tree_build(aset_space *space, const aset_space_size *size, aset_arena *aren
     space->structure.references = size->n_references;
 }
 
-leaf tree_find(const aset_space *space, const int32_t voxel[3]) {
+leaf aset_tree_find(const aset_space *space, const int32_t voxel[3]) {
     uint32_t node = space->nodes[0], level = space->depth;
     while (node < LEAF) {
         level--;

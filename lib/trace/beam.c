@@ -196,9 +196,9 @@ static bool begin(aset_beams *beams, const drawing *d) {
     if (is_of(beams, d)) {
         return beams->can_see;
     }
-    outlook_cells cells = outlook_cells_of(draft);
+    outlook_cells cells = aset_outlook_cells_of(draft);
     aset_outlook outlook;
-    outlook_set_camera(&outlook, eye);
+    aset_outlook_set_camera(&outlook, eye);
     beams->band = beams->segment = NONE;
     beams->words = draft->words;
     beams->check = draft->words[WORD_CHECK];
@@ -211,7 +211,7 @@ static bool begin(aset_beams *beams, const drawing *d) {
     beams->height = d->picture->height;
     beams->samples = d->samples;
     beams->corner = d->corner;
-    beams->can_see = draft->n_facets > 0 && outlook_can_see(&outlook, &cells);
+    beams->can_see = draft->n_facets > 0 && aset_outlook_can_see(&outlook, &cells);
     return beams->can_see;
 }
 
@@ -221,9 +221,9 @@ static void make_band(aset_beams *beams, const drawing *d, uint32_t band) {
     m.picture = d;
     m.draft = d->tracer->draft;
     m.first_row = band * BEAM_ROWS;
-    m.cells = outlook_cells_of(m.draft);
-    outlook_set_camera(&m.outlook, &d->eye);
-    outlook_set_voxels(&m.outlook, &m.cells, 0);
+    m.cells = aset_outlook_cells_of(m.draft);
+    aset_outlook_set_camera(&m.outlook, &d->eye);
+    aset_outlook_set_voxels(&m.outlook, &m.cells, 0);
     make_order(&m);
     beams->band = band;
     beams->n_voxels = 0;
@@ -274,13 +274,14 @@ static void meet(const aset_beams *beams, beam_rays *rays, uint32_t n, const ase
     query_hit kept[BEAM_RAYS];
     aset_real ends[BEAM_RAYS];
     for (uint32_t i = 0; i < n; i++) {
-        ends[i] = draft_query_kept(&kept[i], tracer->draft, rays->origins[i], rays->directions[i], REAL_INFINITY, statistics);
+        ends[i] =
+            aset_draft_query_kept(&kept[i], tracer->draft, rays->origins[i], rays->directions[i], REAL_INFINITY, statistics);
     }
-    draft_beam_start(&beam, tracer->draft, rays->origins, rays->directions, ends, n);
+    aset_draft_beam_start(&beam, tracer->draft, rays->origins, rays->directions, ends, n);
     for (uint32_t i = 0; i < beams->n_chosen; i++) {
         const aset_beam_voxel *v = beams->voxels + beams->chosen[i];
         const uint32_t at[3] = {v->block[0], v->block[1], v->block[2]};
-        if (draft_beam_visit(&beam, at, v->dense, v->in_block)) {
+        if (aset_draft_beam_visit(&beam, at, v->dense, v->in_block)) {
             break;
         }
     }
@@ -288,8 +289,8 @@ static void meet(const aset_beams *beams, beam_rays *rays, uint32_t n, const ase
     statistics->nonempty_visited += beam.n_visited;
     for (uint32_t i = 0; i < n; i++) {
         statistics->approx_hits += beam.cover[i].n > 0;
-        rays->hits[i].n = draft_query_layers(rays->hits[i].layers, beam.layers[i], beam.cover[i].n, rays->origins[i], &kept[i],
-                                             ends[i] < REAL_INFINITY);
+        rays->hits[i].n = aset_draft_query_layers(rays->hits[i].layers, beam.layers[i], beam.cover[i].n, rays->origins[i],
+                                                  &kept[i], ends[i] < REAL_INFINITY);
     }
 }
 
@@ -298,9 +299,9 @@ static void draw_background(const drawing *d, uint32_t n, unsigned char *at) {
     size_t bytes = aset_format_bytes(d->picture->format);
     gathered g = {{0, 0, 0}, 0};
     for (uint32_t i = 0; i < d->samples * d->samples; i++) {
-        drawing_gather(&g, d->tracer->scene->background, 0);
+        aset_drawing_gather(&g, d->tracer->scene->background, 0);
     }
-    drawing_put(d, &g, at);
+    aset_drawing_put(d, &g, at);
     for (uint32_t i = 1; i < n; i++) {
         memcpy(at + i * bytes, at, bytes);
     }
@@ -315,19 +316,19 @@ static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column
     for (uint32_t j = 0; j < d->samples; j++) {
         for (uint32_t i = 0; i < d->samples; i++) {
             for (uint32_t k = 0; k < n; k++) {
-                drawing_ray(d, column + k, row, i, j, &rays.origins[k], &rays.directions[k]);
+                aset_drawing_ray(d, column + k, row, i, j, &rays.origins[k], &rays.directions[k]);
             }
             meet(beams, &rays, n, d->tracer, d->statistics);
             for (uint32_t k = 0; k < n; k++) {
                 aset_real cover;
-                aset_colour c = trace_tree(d->tracer, rays.origins[k], rays.directions[k], &rays.hits[k], d->scratch,
-                                           d->statistics, &cover);
-                drawing_gather(&g[k], c, cover);
+                aset_colour c = aset_trace_tree(d->tracer, rays.origins[k], rays.directions[k], &rays.hits[k], d->scratch,
+                                                d->statistics, &cover);
+                aset_drawing_gather(&g[k], c, cover);
             }
         }
     }
     for (uint32_t k = 0; k < n; k++) {
-        drawing_put(d, &g[k], at + k * aset_format_bytes(d->picture->format));
+        aset_drawing_put(d, &g[k], at + k * aset_format_bytes(d->picture->format));
     }
 }
 

@@ -11,9 +11,9 @@ typedef struct camera {
 } camera;
 
 /* ASET_ERR_ARGUMENT or ASET_ERR_GEOMETRY for a view that cannot be. */
-aset_status camera_make(camera *c, const aset_view *view, uint32_t width, uint32_t height);
+aset_status aset_camera_make(camera *c, const aset_view *view, uint32_t width, uint32_t height);
 
 /* x and y from -1 (left, top) to 1 (right, bottom); the direction is of unit length. */
-void camera_ray(const camera *c, aset_real x, aset_real y, aset_vec3 *origin, aset_vec3 *direction);
+void aset_camera_ray(const camera *c, aset_real x, aset_real y, aset_vec3 *origin, aset_vec3 *direction);
 
 #endif

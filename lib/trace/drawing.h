@@ -23,13 +23,14 @@ typedef struct gathered {
 } gathered;
 
 /* The eye ray of sample (i, j) of a pixel. */
-void drawing_ray(const drawing *d, uint32_t column, uint32_t row, uint32_t i, uint32_t j, aset_vec3 *origin, aset_vec3 *direction);
+void aset_drawing_ray(const drawing *d, uint32_t column, uint32_t row, uint32_t i, uint32_t j, aset_vec3 *origin,
+                      aset_vec3 *direction);
 
 /* Adds a sample, clamped; cover: the share of its eye ray that hit something. */
-void drawing_gather(gathered *g, aset_colour c, aset_real cover);
+void aset_drawing_gather(gathered *g, aset_colour c, aset_real cover);
 
 /* The mean of all samples, as the picture's format has it. */
-void drawing_put(const drawing *d, const gathered *g, unsigned char *at);
+void aset_drawing_put(const drawing *d, const gathered *g, unsigned char *at);
 
 #if ASET_WITH_DRAFTS
 /* How beams draw: through a pointer, so that who names none links none. */

@@ -8,18 +8,18 @@
 #define NEAR R(1e-10)
 #define FAR R(1e10)
 
-bool light_towards(light_ray *towards, const aset_scene *scene, const aset_light *light, aset_vec3 point) {
+bool aset_light_towards(light_ray *towards, const aset_scene *scene, const aset_light *light, aset_vec3 point) {
     if (light->directional) {
         towards->direction = light->position; /* the scene keeps it in unit length */
         towards->distance = REAL_INFINITY;
     } else {
         aset_vec3 way = vec_sub(light->position, point);
-        aset_real distance = vec_length(way);
+        aset_real distance = aset_vec_length(way);
         if (!(distance > 0)) {
             return false;
         }
-        /* vec_unit takes the same root where the square is in range: it need not be drawn twice */
-        towards->direction = distance > NEAR && distance < FAR ? vec_scale(way, 1 / distance) : vec_unit(way);
+        /* aset_vec_unit takes the same root where the square is in range: it need not be drawn twice */
+        towards->direction = distance > NEAR && distance < FAR ? vec_scale(way, 1 / distance) : aset_vec_unit(way);
         towards->distance = distance;
     }
     if (light->has_colour) {

@@ -12,6 +12,6 @@ typedef struct light_ray {
 } light_ray;
 
 /* False if the point is the light itself, which then sends nothing. */
-bool light_towards(light_ray *towards, const aset_scene *scene, const aset_light *light, aset_vec3 point);
+bool aset_light_towards(light_ray *towards, const aset_scene *scene, const aset_light *light, aset_vec3 point);
 
 #endif

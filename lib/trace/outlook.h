@@ -30,7 +30,7 @@ typedef struct outlook_rectangle {
     aset_real left, right, top, bottom;
 } outlook_rectangle;
 
-outlook_cells outlook_cells_of(const aset_draft *draft);
+outlook_cells aset_outlook_cells_of(const aset_draft *draft);
 
 /* Half the size along a vector of what spans half on each axis, to either side. */
 static inline aset_real outlook_extent(aset_vec3 half, aset_vec3 along) {
@@ -38,13 +38,13 @@ static inline aset_real outlook_extent(aset_vec3 half, aset_vec3 along) {
 }
 
 /* As a camera sees; -1..1 is the picture. */
-void outlook_set_camera(aset_outlook *o, const camera *eye);
+void aset_outlook_set_camera(aset_outlook *o, const camera *eye);
 
 /* Voxels' extents, when from, forward, across and down are set; grown: by so much more than rounding asks for, on all sides. */
-void outlook_set_voxels(aset_outlook *o, const outlook_cells *cells, aset_real grown);
+void aset_outlook_set_voxels(aset_outlook *o, const outlook_cells *cells, aset_real grown);
 
 /* Does all of the cells' box lie before it, and near enough for sharp numbers? */
-bool outlook_can_see(const aset_outlook *o, const outlook_cells *cells);
+bool aset_outlook_can_see(const aset_outlook *o, const outlook_cells *cells);
 
 /* The middle of a voxel. */
 static inline aset_vec3 outlook_middle(const outlook_cells *c, uint32_t x, uint32_t y, uint32_t z) {

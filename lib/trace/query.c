@@ -5,7 +5,7 @@
 
 #include "space/answers.h"
 
-/* Who answers; what the tracer lacks is query_can's affair. */
+/* Who answers; what the tracer lacks is aset_query_can's affair. */
 static const struct aset_answers *answers_of(const aset_tracer *tracer, bool approximate) {
 #if ASET_WITH_DRAFTS
     if (approximate && tracer->draft != NULL) {
@@ -21,7 +21,7 @@ static const struct aset_answers *answers_of(const aset_tracer *tracer, bool app
     return tracer->space->answers;
 }
 
-aset_real query_clearance(const aset_tracer *tracer) {
+aset_real aset_query_clearance(const aset_tracer *tracer) {
 #if ASET_WITH_DRAFTS
     return tracer->draft != NULL ? tracer->draft->answers->clearance(tracer) : 0;
 #else
@@ -30,8 +30,8 @@ aset_real query_clearance(const aset_tracer *tracer) {
 #endif
 }
 
-bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                   bool approximate, aset_statistics *statistics) {
+bool aset_query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                        bool approximate, aset_statistics *statistics) {
     const struct aset_answers *answers = answers_of(tracer, approximate);
     if (!answers->layered) {
         return answers->meet(hit, tracer, origin, direction, t_max, statistics) > 0;
@@ -47,18 +47,18 @@ bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, 
     return n > 0;
 }
 
-uint32_t query_layers(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction,
-                      bool approximate, aset_statistics *statistics) {
+uint32_t aset_query_layers(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tracer, aset_vec3 origin,
+                           aset_vec3 direction, bool approximate, aset_statistics *statistics) {
     return answers_of(tracer, approximate)->meet(layers, tracer, origin, direction, REAL_INFINITY, statistics);
 }
 
-bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
-               aset_real t_last, aset_statistics *statistics) {
+bool aset_query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
+                    aset_real t_last, aset_statistics *statistics) {
     return answers_of(tracer, approximate)->any(tracer, origin, direction, t_max, t_last, statistics);
 }
 
-void query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit,
-                   aset_vec3 direction) {
+void aset_query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit,
+                        aset_vec3 direction) {
     surface->t = hit->t;
     surface->point = vec_along(hit->near, hit->t_near, direction);
     surface->object = hit->object;
@@ -69,7 +69,7 @@ void query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tra
     }
 }
 
-bool query_can(const aset_tracer *tracer, bool approximate) {
+bool aset_query_can(const aset_tracer *tracer, bool approximate) {
     if (tracer->scene == NULL) {
         return false;
     }
@@ -91,11 +91,11 @@ bool query_can(const aset_tracer *tracer, bool approximate) {
 /* A caller's ray, checked; its direction and t_max in unit lengths. length: of the caller's direction. */
 static aset_status accept_ray(const aset_tracer *tracer, const aset_ray *ray, bool approximate, aset_vec3 *direction,
                               aset_real *length) {
-    if (tracer == NULL || ray == NULL || !query_can(tracer, approximate)) {
+    if (tracer == NULL || ray == NULL || !aset_query_can(tracer, approximate)) {
         return ASET_ERR_ARGUMENT;
     }
-    *direction = vec_unit(ray->direction);
-    *length = vec_length(ray->direction);
+    *direction = aset_vec_unit(ray->direction);
+    *length = aset_vec_length(ray->direction);
     bool fine = vec_finite(ray->origin) && vec_finite(ray->direction) && real_finite(*length) && *length > 0 &&
                 ray->t_max == ray->t_max;
     return fine ? ASET_OK : ASET_ERR_ARGUMENT;
@@ -114,11 +114,11 @@ aset_status aset_closest_hit(bool *found, aset_hit *hit, const aset_tracer *trac
     if (status != ASET_OK) {
         return status;
     }
-    *found = query_closest(&q, tracer, ray->origin, direction, ray->t_max * length, approximate,
-                           statistics != NULL ? statistics : &ignored);
+    *found = aset_query_closest(&q, tracer, ray->origin, direction, ray->t_max * length, approximate,
+                                statistics != NULL ? statistics : &ignored);
     if (*found) {
         aset_material own;
-        query_surface(hit, &own, tracer, &q, direction);
+        aset_query_surface(hit, &own, tracer, &q, direction);
         hit->material = hit->material != &own ? hit->material : NULL;
         hit->t = q.t / length;
     }
@@ -135,8 +135,8 @@ aset_status aset_any_hit(bool *found, const aset_tracer *tracer, const aset_ray 
     }
     aset_status status = accept_ray(tracer, ray, approximate, &direction, &length);
     if (status == ASET_OK) {
-        *found = query_any(tracer, ray->origin, direction, ray->t_max * length, approximate, REAL_INFINITY,
-                           statistics != NULL ? statistics : &ignored);
+        *found = aset_query_any(tracer, ray->origin, direction, ray->t_max * length, approximate, REAL_INFINITY,
+                                statistics != NULL ? statistics : &ignored);
     }
     return status;
 }

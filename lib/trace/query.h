@@ -17,27 +17,27 @@
 #endif
 
 /* Whether the tracer has what exact or approximate queries need. */
-bool query_can(const aset_tracer *tracer, bool approximate);
+bool aset_query_can(const aset_tracer *tracer, bool approximate);
 
 /* direction: of unit length. False: nothing hit (or curtailed). */
-bool query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                   bool approximate, aset_statistics *statistics);
+bool aset_query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                        bool approximate, aset_statistics *statistics);
 /* t_last: behind it no marked cell of a draft lies, as far as is known (reach.h). */
-bool query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
-               aset_real t_last, aset_statistics *statistics);
+bool aset_query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,
+                    aset_real t_last, aset_statistics *statistics);
 
 /*
  * What the ray meets, in order, until it is covered: one hit unless a draft answers. How many; the rest of the ray meets
  * nothing.
  */
-uint32_t query_layers(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction,
-                      bool approximate, aset_statistics *statistics);
+uint32_t aset_query_layers(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tracer, aset_vec3 origin,
+                           aset_vec3 direction, bool approximate, aset_statistics *statistics);
 
 /* Point, normals and material of a hit; own is where the material of a draft's facet is put. */
-void query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit,
-                   aset_vec3 direction);
+void aset_query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit,
+                        aset_vec3 direction);
 
 /* How far from a surface rays start that the approximation will answer: 0 where the usual distance is enough. */
-aset_real query_clearance(const aset_tracer *tracer);
+aset_real aset_query_clearance(const aset_tracer *tracer);
 
 #endif

@@ -19,9 +19,9 @@
 static void look_from(aset_outlook *o, const aset_light *light, const outlook_cells *c) {
     o->parallel = light->directional;
     o->from = o->parallel ? vec_along(c->middle, 2 * c->diagonal, light->position) : light->position;
-    o->forward = vec_unit(vec_sub(c->middle, o->from));
+    o->forward = aset_vec_unit(vec_sub(c->middle, o->from));
     aset_vec3 aside = real_abs(o->forward.x) < R(0.6) ? vec(1, 0, 0) : vec(0, 1, 0);
-    o->across = vec_unit(vec_cross(o->forward, aside));
+    o->across = aset_vec_unit(vec_cross(o->forward, aside));
     o->down = vec_cross(o->forward, o->across);
     aset_real depth = 1;
     if (!o->parallel) { /* of the box's nearest plane; not above 0: then it cannot be seen */
@@ -29,7 +29,7 @@ static void look_from(aset_outlook *o, const aset_light *light, const outlook_ce
     }
     o->across = vec_scale(o->across, depth / outlook_extent(c->half, o->across));
     o->down = vec_scale(o->down, depth / outlook_extent(c->half, o->down));
-    outlook_set_voxels(o, c, OFF_GROWN * c->column);
+    aset_outlook_set_voxels(o, c, OFF_GROWN * c->column);
 }
 
 static uint32_t tile_at(const aset_reach_map *map, aset_real x) {
@@ -43,7 +43,7 @@ static void add_voxel(aset_reach_map *map, aset_vec3 middle) {
     outlook_rectangle r = outlook_of(o, way, 1);
     aset_real more = 2 * TILE_GROWN / (aset_real)(int32_t)map->tiles;
     uint32_t left = tile_at(map, r.left - more), right = tile_at(map, r.right + more), bottom = tile_at(map, r.bottom + more);
-    aset_real near = o->parallel ? vec_dot(way, o->forward) - o->half_forward : vec_length(way) - o->ball;
+    aset_real near = o->parallel ? vec_dot(way, o->forward) - o->half_forward : aset_vec_length(way) - o->ball;
     for (uint32_t row = tile_at(map, r.top - more); row <= bottom; row++) {
         aset_real *tiles = map->near + (size_t)row * map->tiles;
         for (uint32_t column = left; column <= right; column++) {
@@ -101,7 +101,7 @@ aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t
     if (at == NULL) {
         return ASET_ERR_NOMEM;
     }
-    const outlook_cells cells = outlook_cells_of(draft);
+    const outlook_cells cells = aset_outlook_cells_of(draft);
     reach->calls = &calls;
     reach->draft = draft;
     reach->lights = (aset_reach_map *)(void *)at;
@@ -110,7 +110,7 @@ aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t
         aset_reach_map *map = reach->lights + i;
         look_from(&map->outlook, draft->stage.lights + i, &cells);
         map->near = (aset_real *)(void *)at;
-        map->tiles = outlook_can_see(&map->outlook, &cells) ? tiles : 0;
+        map->tiles = aset_outlook_can_see(&map->outlook, &cells) ? tiles : 0;
         if (map->tiles > 0) {
             fill(map, draft, &cells);
         }

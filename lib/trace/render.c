@@ -51,21 +51,23 @@ static void put_pixel(unsigned char *at, const aset_picture *picture, aset_colou
     }
 }
 
-void drawing_ray(const drawing *d, uint32_t column, uint32_t row, uint32_t i, uint32_t j, aset_vec3 *origin, aset_vec3 *direction) {
+void aset_drawing_ray(const drawing *d, uint32_t column, uint32_t row, uint32_t i, uint32_t j, aset_vec3 *origin,
+                      aset_vec3 *direction) {
     aset_real n = (aset_real)d->samples;
     aset_real x = (aset_real)column - d->corner + ((aset_real)i + R(0.5)) / n;
     aset_real y = (aset_real)row - d->corner + ((aset_real)j + R(0.5)) / n;
-    camera_ray(&d->eye, 2 * x / (aset_real)d->picture->width - 1, 2 * y / (aset_real)d->picture->height - 1, origin, direction);
+    aset_camera_ray(&d->eye, 2 * x / (aset_real)d->picture->width - 1, 2 * y / (aset_real)d->picture->height - 1, origin,
+                    direction);
 }
 
-void drawing_gather(gathered *g, aset_colour c, aset_real cover) {
+void aset_drawing_gather(gathered *g, aset_colour c, aset_real cover) {
     g->sum.r += clamp(c.r);
     g->sum.g += clamp(c.g);
     g->sum.b += clamp(c.b);
     g->cover += cover;
 }
 
-void drawing_put(const drawing *d, const gathered *g, unsigned char *at) {
+void aset_drawing_put(const drawing *d, const gathered *g, unsigned char *at) {
     aset_real n = (aset_real)d->samples, share = 1 / (n * n);
     aset_colour mean = {g->sum.r * share, g->sum.g * share, g->sum.b * share};
     put_pixel(at, d->picture, mean, g->cover * share);
@@ -77,12 +79,12 @@ static void draw_pixel(const drawing *d, uint32_t column, uint32_t row, unsigned
         for (uint32_t i = 0; i < d->samples; i++) {
             aset_vec3 origin, direction;
             aset_real cover;
-            drawing_ray(d, column, row, i, j, &origin, &direction);
-            aset_colour c = trace_tree(d->tracer, origin, direction, NULL, d->scratch, d->statistics, &cover);
-            drawing_gather(&g, c, cover);
+            aset_drawing_ray(d, column, row, i, j, &origin, &direction);
+            aset_colour c = aset_trace_tree(d->tracer, origin, direction, NULL, d->scratch, d->statistics, &cover);
+            aset_drawing_gather(&g, c, cover);
         }
     }
-    drawing_put(d, &g, at);
+    aset_drawing_put(d, &g, at);
 }
 
 static void draw_row(const drawing *d, aset_beams *beams, uint32_t row, unsigned char *line) {
@@ -102,7 +104,7 @@ static aset_beams *beams_for(const drawing *d) {
 #if ASET_WITH_DRAFTS
     const aset_tracer *tracer = d->tracer;
     aset_beams *beams = d->scratch->beams;
-    bool asks = tracer->draft != NULL && !tracer->draft_sides && policy_approximate(tracer, ASET_PRIMARY, 0);
+    bool asks = tracer->draft != NULL && !tracer->draft_sides && aset_policy_approximate(tracer, ASET_PRIMARY, 0);
     return beams != NULL && asks && beams->calls->begin(beams, d) ? beams : NULL;
 #else
     (void)d;
@@ -112,7 +114,7 @@ static aset_beams *beams_for(const drawing *d) {
 
 static aset_status drawing_make(drawing *d, const aset_tracer *tracer, const aset_view *view,
                                 const aset_picture *picture, aset_scratch *scratch, aset_statistics *statistics) {
-    if (view == NULL || picture == NULL || picture->pixels == NULL || trace_check(tracer, scratch) != ASET_OK) {
+    if (view == NULL || picture == NULL || picture->pixels == NULL || aset_trace_check(tracer, scratch) != ASET_OK) {
         return ASET_ERR_ARGUMENT;
     }
     if (picture->width == 0 || picture->width > PICTURE_MAX || picture->height == 0 || picture->height > PICTURE_MAX ||
@@ -127,7 +129,7 @@ static aset_status drawing_make(drawing *d, const aset_tracer *tracer, const ase
     d->corner = tracer->spd_rules ? R(0.5) : 0;
     d->scratch = scratch;
     d->statistics = statistics;
-    return camera_make(&d->eye, view, picture->width, picture->height);
+    return aset_camera_make(&d->eye, view, picture->width, picture->height);
 }
 
 aset_status aset_render_rows(const aset_tracer *tracer, const aset_view *view, const aset_picture *picture,

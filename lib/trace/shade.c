@@ -12,7 +12,7 @@
 #define AMBIENT R(0.1)
 #define NUDGE (32 * REAL_UNIT)
 
-bool policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t depth) {
+bool aset_policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t depth) {
 #if ASET_WITH_APPROXIMATION
     bool can = tracer->summary != NULL;
 #if ASET_WITH_DRAFTS
@@ -27,23 +27,23 @@ bool policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t dept
 #endif
 }
 
-void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction) {
-    query_surface(&s->hit, &s->own, tracer, hit, direction);
+void aset_shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction) {
+    aset_query_surface(&s->hit, &s->own, tracer, hit, direction);
     s->direction = direction;
     s->entering = vec_dot(s->hit.geometric, direction) <= 0;
     s->facing = s->entering ? s->hit.geometric : vec_scale(s->hit.geometric, -1);
     s->normal = s->entering ? s->hit.normal : vec_scale(s->hit.normal, -1);
     s->nudge = (vec_largest(s->hit.point) + hit->t_near) * NUDGE;
-    s->clearance = query_clearance(tracer);
+    s->clearance = aset_query_clearance(tracer);
 }
 
-aset_vec3 shade_start(const shading *s, aset_vec3 direction) {
+aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction) {
     return vec_along(s->hit.point, vec_dot(direction, s->facing) < 0 ? -s->nudge : s->nudge, s->facing);
 }
 
-aset_vec3 shade_start_for(const shading *s, aset_vec3 direction, bool approximate) {
+aset_vec3 aset_shade_start_for(const shading *s, aset_vec3 direction, bool approximate) {
     if (!approximate || !(s->clearance > s->nudge)) {
-        return shade_start(s, direction);
+        return aset_shade_start(s, direction);
     }
     return vec_along(s->hit.point, vec_dot(direction, s->facing) < 0 ? -s->clearance : s->clearance, s->facing);
 }
@@ -61,9 +61,9 @@ static aset_real last_before(const aset_tracer *tracer, const shading *s, uint32
 
 static bool in_shadow(const aset_tracer *tracer, const shading *s, uint32_t light, const light_ray *towards, uint32_t depth,
                       aset_statistics *statistics) {
-    bool approximate = policy_approximate(tracer, ASET_SHADOW, depth);
-    bool hit = query_any(tracer, shade_start_for(s, towards->direction, approximate), towards->direction, towards->distance,
-                         approximate, last_before(tracer, s, light, towards), statistics);
+    bool approximate = aset_policy_approximate(tracer, ASET_SHADOW, depth);
+    bool hit = aset_query_any(tracer, aset_shade_start_for(s, towards->direction, approximate), towards->direction,
+                              towards->distance, approximate, last_before(tracer, s, light, towards), statistics);
     statistics->shadow++;
     statistics->shadow_hit += hit;
     return hit;
@@ -80,17 +80,17 @@ static aset_vec3 lit_normal(const aset_tracer *tracer, const shading *s) {
 static aset_real highlight(const shading *s, aset_vec3 normal, aset_vec3 to_light, aset_real n_dot_l) {
     aset_vec3 mirrored = vec_sub(vec_scale(normal, 2 * n_dot_l), to_light);
     aset_real r_dot_v = -vec_dot(mirrored, s->direction);
-    return r_dot_v > 0 ? real_power(r_dot_v, s->hit.material->shine) : 0;
+    return r_dot_v > 0 ? aset_real_power(r_dot_v, s->hit.material->shine) : 0;
 }
 
-aset_colour shade_local(const aset_tracer *tracer, const shading *s, uint32_t depth, aset_statistics *statistics) {
+aset_colour aset_shade_local(const aset_tracer *tracer, const shading *s, uint32_t depth, aset_statistics *statistics) {
     const aset_scene *scene = tracer->scene;
     const aset_material *m = s->hit.material;
     aset_vec3 normal = lit_normal(tracer, s);
     aset_colour sum = {AMBIENT * m->fill.r, AMBIENT * m->fill.g, AMBIENT * m->fill.b};
     for (uint32_t i = 0; i < scene->counts.lights; i++) {
         light_ray towards;
-        if (!light_towards(&towards, scene, scene->lights + i, s->hit.point)) {
+        if (!aset_light_towards(&towards, scene, scene->lights + i, s->hit.point)) {
             continue;
         }
         aset_real n_dot_l = vec_dot(normal, towards.direction);
@@ -106,13 +106,13 @@ aset_colour shade_local(const aset_tracer *tracer, const shading *s, uint32_t de
     return sum;
 }
 
-aset_vec3 shade_reflected(const shading *s) {
+aset_vec3 aset_shade_reflected(const shading *s) {
     aset_real twice = 2 * vec_dot(s->normal, s->direction);
-    return vec_unit(vec_along(s->direction, -twice, s->normal));
+    return aset_vec_unit(vec_along(s->direction, -twice, s->normal));
 }
 
 #if ASET_WITH_REFRACTION
-bool shade_refracted(const shading *s, aset_vec3 *direction) {
+bool aset_shade_refracted(const shading *s, aset_vec3 *direction) {
     aset_real index = s->hit.material->refraction_index;
     index = index > 0 ? index : 1;
     aset_real ratio = s->entering ? 1 / index : index;
@@ -122,7 +122,7 @@ bool shade_refracted(const shading *s, aset_vec3 *direction) {
         return false;
     }
     aset_vec3 along = vec_scale(s->direction, ratio);
-    *direction = vec_unit(vec_along(along, ratio * cosine - real_sqrt(under_root), s->normal));
+    *direction = aset_vec_unit(vec_along(along, ratio * cosine - real_sqrt(under_root), s->normal));
     return true;
 }
 #endif

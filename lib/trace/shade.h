@@ -16,25 +16,25 @@ typedef struct shading {
     aset_material own;   /* the material of a draft's facet */
 } shading;
 
-void shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction);
+void aset_shading_make(shading *s, const aset_tracer *tracer, const query_hit *hit, aset_vec3 direction);
 
 /* Whether rays of this kind and depth take the approximation: the one place that decides. */
-bool policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t depth);
+bool aset_policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t depth);
 
 /* 0.1 fill + what the lights add; sends the shadow rays. depth: of the ray that hit. */
-aset_colour shade_local(const aset_tracer *tracer, const shading *s, uint32_t depth, aset_statistics *statistics);
+aset_colour aset_shade_local(const aset_tracer *tracer, const shading *s, uint32_t depth, aset_statistics *statistics);
 
 /* Where a ray that leaves the surface along direction starts: off the surface, on the side it goes to. */
-aset_vec3 shade_start(const shading *s, aset_vec3 direction);
+aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction);
 
 /* The same for a ray that the approximation answers, if approximate. */
-aset_vec3 shade_start_for(const shading *s, aset_vec3 direction, bool approximate);
+aset_vec3 aset_shade_start_for(const shading *s, aset_vec3 direction, bool approximate);
 
-aset_vec3 shade_reflected(const shading *s);
+aset_vec3 aset_shade_reflected(const shading *s);
 
 #if ASET_WITH_REFRACTION
 /* The refracted direction; false under total internal reflection. */
-bool shade_refracted(const shading *s, aset_vec3 *direction);
+bool aset_shade_refracted(const shading *s, aset_vec3 *direction);
 #endif
 
 #endif

@@ -37,7 +37,7 @@ aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena 
 static void leave(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer, const shading *s, aset_vec3 direction,
                   aset_real weight, uint32_t depth, aset_kind kind) {
     aset_waiting *w = scratch->stack + (*n)++;
-    w->origin = shade_start_for(s, direction, policy_approximate(tracer, kind, depth));
+    w->origin = aset_shade_start_for(s, direction, aset_policy_approximate(tracer, kind, depth));
     w->direction = direction;
     w->weight = weight;
     w->depth = (uint16_t)depth;
@@ -56,7 +56,7 @@ static void send_on(aset_scratch *scratch, uint32_t *n, const aset_tracer *trace
 #if ASET_WITH_REFRACTION
     bool transmits = m->transmittance > 0;
     aset_vec3 direction;
-    if (transmits && shade_refracted(s, &direction)) {
+    if (transmits && aset_shade_refracted(s, &direction)) {
         leave(scratch, n, tracer, s, direction, weight * m->transmittance, depth, ASET_REFRACTED);
     }
 #else
@@ -64,7 +64,7 @@ static void send_on(aset_scratch *scratch, uint32_t *n, const aset_tracer *trace
 #endif
 #if ASET_WITH_REFLECTION
     if (m->specular > 0 || (tracer->spd_rules && transmits)) {
-        leave(scratch, n, tracer, s, shade_reflected(s), weight * m->specular, depth, ASET_REFLECTED);
+        leave(scratch, n, tracer, s, aset_shade_reflected(s), weight * m->specular, depth, ASET_REFLECTED);
     }
 #else
     (void)transmits;
@@ -100,8 +100,8 @@ static aset_real shade_layers(aset_colour *sum, const aset_tracer *tracer, aset_
     uint32_t sender = 1;
     for (uint32_t i = 0; i < n_layers; i++) {
         shading *s = pair + (1 - sender);
-        shading_make(s, tracer, layers + i, direction);
-        aset_colour local = shade_local(tracer, s, depth, statistics);
+        aset_shading_make(s, tracer, layers + i, direction);
+        aset_colour local = aset_shade_local(tracer, s, depth, statistics);
         add_colour(sum, weight * layers[i].cover, &local);
         left -= layers[i].cover;
         if (layers[i].cover > most) {
@@ -115,8 +115,8 @@ static aset_real shade_layers(aset_colour *sum, const aset_tracer *tracer, aset_
 }
 
 /* The tree behind one eye ray of unit direction; *cover: the share of the eye ray itself that hit something. */
-aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, const eye_hits *known,
-                       aset_scratch *scratch, aset_statistics *statistics, aset_real *cover) {
+aset_colour aset_trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, const eye_hits *known,
+                            aset_scratch *scratch, aset_statistics *statistics, aset_real *cover) {
     aset_colour sum = {0, 0, 0};
     uint32_t n = 1;
     scratch->stack[0].origin = origin;
@@ -134,13 +134,13 @@ aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 di
         query_hit found[QUERY_LAYERS_MAX];
         const query_hit *layers = known != NULL ? known->layers : found;
         uint32_t n_layers = known != NULL ? known->n
-                                          : query_layers(found, tracer, ray->origin, direction_of,
-                                                         policy_approximate(tracer, kind, depth), statistics);
+                                          : aset_query_layers(found, tracer, ray->origin, direction_of,
+                                                              aset_policy_approximate(tracer, kind, depth), statistics);
         count_ray(statistics, kind, n_layers > 0);
         if (n_layers == 1 && layers[0].cover == 1) {
             shading s;
-            shading_make(&s, tracer, layers, direction_of);
-            aset_colour local = shade_local(tracer, &s, depth, statistics);
+            aset_shading_make(&s, tracer, layers, direction_of);
+            aset_colour local = aset_shade_local(tracer, &s, depth, statistics);
             add_colour(&sum, weight, &local);
             send_on(scratch, &n, tracer, &s, depth, weight);
             left = 0;
@@ -158,15 +158,15 @@ aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 di
 /* No ray needs the space. */
 static bool always_approximate(const aset_tracer *tracer) {
 #if ASET_WITH_APPROXIMATION
-    return tracer->approx_kinds == ASET_ALL_KINDS && tracer->approx_depth == 0 && query_can(tracer, true);
+    return tracer->approx_kinds == ASET_ALL_KINDS && tracer->approx_depth == 0 && aset_query_can(tracer, true);
 #else
     (void)tracer;
     return false;
 #endif
 }
 
-aset_status trace_check(const aset_tracer *tracer, const aset_scratch *scratch) {
-    bool fine = tracer != NULL && scratch != NULL && (query_can(tracer, false) || always_approximate(tracer)) &&
+aset_status aset_trace_check(const aset_tracer *tracer, const aset_scratch *scratch) {
+    bool fine = tracer != NULL && scratch != NULL && (aset_query_can(tracer, false) || always_approximate(tracer)) &&
                 scratch->stack != NULL && scratch->capacity >= tracer_depth(tracer);
     return fine ? ASET_OK : ASET_ERR_ARGUMENT;
 }
@@ -175,15 +175,16 @@ aset_status aset_ray_colour(aset_colour *colour, const aset_tracer *tracer, cons
                             aset_statistics *statistics) {
     aset_statistics ignored;
     aset_real cover;
-    aset_status status = trace_check(tracer, scratch);
+    aset_status status = aset_trace_check(tracer, scratch);
     if (status != ASET_OK || colour == NULL || ray == NULL) {
         return ASET_ERR_ARGUMENT;
     }
-    aset_vec3 direction = vec_unit(ray->direction);
+    aset_vec3 direction = aset_vec_unit(ray->direction);
     if (!vec_finite(ray->origin) || !vec_finite(ray->direction) || !(vec_largest(direction) > 0)) {
         return ASET_ERR_ARGUMENT;
     }
     memset(&ignored, 0, sizeof ignored);
-    *colour = trace_tree(tracer, ray->origin, direction, NULL, scratch, statistics != NULL ? statistics : &ignored, &cover);
+    *colour =
+        aset_trace_tree(tracer, ray->origin, direction, NULL, scratch, statistics != NULL ? statistics : &ignored, &cover);
     return ASET_OK;
 }

@@ -11,13 +11,13 @@ typedef struct eye_hits {
 } eye_hits;
 
 /*
- * direction: of unit length; the scratch as trace_check wants it; known may be NULL. *cover: the share of the eye ray itself that
+ * direction: of unit length; the scratch as aset_trace_check wants it; known may be NULL. *cover: the share of the eye ray itself that
  * hit something.
  */
-aset_colour trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, const eye_hits *known,
-                       aset_scratch *scratch, aset_statistics *statistics, aset_real *cover);
+aset_colour aset_trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, const eye_hits *known,
+                            aset_scratch *scratch, aset_statistics *statistics, aset_real *cover);
 
 /* ASET_ERR_ARGUMENT unless the tracer is complete and the scratch deep enough for it. */
-aset_status trace_check(const aset_tracer *tracer, const aset_scratch *scratch);
+aset_status aset_trace_check(const aset_tracer *tracer, const aset_scratch *scratch);
 
 #endif

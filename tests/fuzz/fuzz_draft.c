@@ -12,7 +12,7 @@ static void put_right(uint32_t *words, size_t n_words) {
     words[WORD_MAGIC] = FACET_MAGIC;
     words[WORD_VERSION] = FACET_VERSION;
     words[WORD_N_WORDS] = (uint32_t)n_words;
-    words[WORD_CHECK] = draft_checksum(words, n_words);
+    words[WORD_CHECK] = aset_draft_checksum(words, n_words);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

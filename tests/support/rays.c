@@ -220,8 +220,8 @@ aset_ray brought_near(const aset_scene *scene, const aset_ray *ray) {
     aset_vec3 low, high;
     aset_real t_in, t_out;
     near.direction = dvec_real(dvec_unit(dvec_of(ray->direction)));
-    probe p = probe_make(near.origin, near.direction);
-    if (aset_scene_bounds(scene, &low, &high) && probe_box(&p, low, high, &t_in, &t_out)) {
+    probe p = aset_probe_make(near.origin, near.direction);
+    if (aset_scene_bounds(scene, &low, &high) && aset_probe_box(&p, low, high, &t_in, &t_out)) {
         double moved = (double)t_in - size_of(scene) / 16;
         if (moved > 0) {
             near.origin = dvec_real(dvec_along(dvec_of(near.origin), moved, dvec_of(near.direction)));
@@ -307,7 +307,7 @@ void inspect_walk(inspection *in, duel *d, const aset_ray *ray, ray_sort sort) {
     in->duel = d;
     in->ray = ray;
     in->last_t = -REAL_INFINITY;
-    probe p = probe_make(ray->origin, ray->direction);
+    probe p = aset_probe_make(ray->origin, ray->direction);
     d->other.space->method->go(d->other.space, &p, &in->walk);
     check(!in->twice, DUEL_TEXT ": an object twice", DUEL_ARGS(d, sort));
     check(!in->backwards, DUEL_TEXT ": cells out of order", DUEL_ARGS(d, sort));

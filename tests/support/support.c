@@ -404,8 +404,8 @@ aset_tracer stage_tracer(const stage *s, const aset_space *space) {
 }
 
 aset_real object_hit(const aset_scene *scene, uint32_t object, aset_vec3 origin, aset_vec3 direction) {
-    probe ray = probe_make(origin, direction);
-    return object_nearest(scene, object, &ray, REAL_INFINITY);
+    probe ray = aset_probe_make(origin, direction);
+    return aset_object_nearest(scene, object, &ray, REAL_INFINITY);
 }
 
 /* --- marking --- */
@@ -413,7 +413,7 @@ aset_real object_hit(const aset_scene *scene, uint32_t object, aset_vec3 origin,
 void expected_box(const aset_space *space, uint32_t object, int32_t low[3], int32_t high[3]) {
     aset_vec3 lower, upper;
     aset_object_bounds(space->scene, object, &lower, &upper);
-    const aset_real margin = 2 * space->scene->margin; /* the rule of spaces, see object_margin */
+    const aset_real margin = 2 * space->scene->margin; /* the rule of spaces, see aset_object_margin */
     const aset_real from[3] = {lower.x - margin, lower.y - margin, lower.z - margin};
     const aset_real to[3] = {upper.x + margin, upper.y + margin, upper.z + margin};
     for (int a = 0; a < 3; a++) {
