@@ -40,7 +40,7 @@ libaset_3() {
     printf 'Compile and link with\n.I pkg\\-config \\-\\-cflags \\-\\-libs libaset\n'
     (
         cd "$include"
-        awk -f "$OLDPWD/$here/man-headers.awk" aset.h config.h types.h arena.h scene.h stage.h space.h summary.h draft.h \
+        awk -f "$OLDPWD/$here/man-headers.awk" aset.h config.h types.h arena.h scene.h stage.h space.h summary.h flat.h draft.h reach.h beams.h \
             trace.h report.h load.h procedural.h
     )
     printf '.SH SEE ALSO\n.BR aset (1)\n'
