@@ -1,5 +1,5 @@
 # Installed by CMake, static and shared; found by find_package, and by pkg-config in what CMake has installed.
-needs cmake "$CXX"
+needs cmake pkg-config "$CXX"
 for shared in OFF ON; do
     cmake -S "$ROOT" -B library-$shared -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=$shared -DCMAKE_INSTALL_PREFIX="$PWD/prefix-$shared"
     cmake --build library-$shared

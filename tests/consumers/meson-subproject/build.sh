@@ -1,5 +1,5 @@
 # A copy of the library in subprojects/, static and shared; then libaset installed by Meson and found by the same line.
-needs meson ninja
+needs meson ninja pkg-config
 mkdir -p subprojects/aset
 (cd "$ROOT" && tar cf - meson.build meson_options.txt include lib) | tar xf - -C subprojects/aset
 for kind in static shared; do
