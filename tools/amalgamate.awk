@@ -263,9 +263,10 @@ function is_prototype(text) {
 
 # Where a function or constant of a private header is declared or defined: it becomes static, and stays so.
 function is_internal(file, text,    name) {
-    if (text ~ /^const [a-z_]+ [a-z_0-9]+\[/) {
-        name = last_name(substr(text, 1, index(text, "[") - 1))
-        return name in internal
+    if (text ~ /^const (struct )?[a-z_]+ [a-z_0-9]+(\[| = )/) {
+        name = text
+        sub(/(\[| = ).*/, "", name)
+        return last_name(name) in internal
     }
     if (!is_prototype(text)) {
         return 0

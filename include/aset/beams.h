@@ -11,9 +11,7 @@
 
 #include "aset/draft.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 typedef struct aset_beams aset_beams;
 
@@ -61,7 +59,5 @@ aset_status aset_beams_init(aset_beams *beams, uint32_t voxels, aset_arena *aren
 
 #endif
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

@@ -14,9 +14,7 @@
 
 #include "aset/summary.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 #if ASET_WITH_APPROXIMATION
 
@@ -93,7 +91,5 @@ aset_status aset_flat_finish(aset_scene *stage, aset_space *space, aset_summary 
 
 #endif
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

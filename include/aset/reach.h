@@ -11,9 +11,7 @@
 
 #include "aset/draft.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+ASET_HEADER_BEGIN
 
 #if ASET_WITH_DRAFTS
 
@@ -56,7 +54,5 @@ aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t
 
 #endif
 
-#ifdef __cplusplus
-}
-#endif
+ASET_HEADER_END
 #endif

@@ -28,6 +28,7 @@
 #include "aset/draft.h"
 #include "base/bits.h"
 #include "base/vec.h"
+#include "space/answers.h"
 
 #include <string.h>
 

@@ -4,6 +4,7 @@
 
 #include "aset/summary.h"
 #include "base/bits.h"
+#include "space/answers.h"
 
 #if ASET_WITH_APPROXIMATION
 extern const struct aset_answers aset_summary_answers;
