@@ -138,6 +138,25 @@ static const char *check_blocks(const aset_draft *d) {
     return next == d->n_facets && starts_bit(d->starts, d->n_facets) ? NULL : "a draft with facets of no block";
 }
 
+/* No voxel lies beyond the divisions, where the walk of single rays would not begin. */
+static const char *check_marks(const aset_draft *d) {
+    const uint32_t *n = d->blocks;
+    uint32_t dense = 0;
+    for (uint32_t i = 0; i < n[0] * n[1] * n[2]; i++) {
+        const uint32_t at[3] = {i % n[0] * 4, i / n[0] % n[1] * 4, i / n[0] / n[1] * 4};
+        if (!draft_has_block(d, i)) {
+            continue;
+        }
+        for (uint64_t marks = draft_marks(d, dense++); marks != 0; marks &= marks - 1) {
+            unsigned k = bits_lowest(marks);
+            if (at[0] + k % 4 >= d->n[0] || at[1] + k / 4 % 4 >= d->n[1] || at[2] + k / 16 >= d->n[2]) {
+                return "a draft with voxels beyond its divisions";
+            }
+        }
+    }
+    return NULL;
+}
+
 static const char *check_facets(const aset_draft *d) {
     for (uint32_t i = 0; i < d->n_surfaces; i++) {
         uint32_t s = d->surfaces[i];
@@ -347,6 +366,7 @@ aset_status aset_draft_open(aset_draft *draft, const uint32_t *words, size_t n_w
         wrong = "a draft whose parts do not fill its length";
     }
     wrong = wrong != NULL ? wrong : check_blocks(&opened);
+    wrong = wrong != NULL ? wrong : check_marks(&opened);
     wrong = wrong != NULL ? wrong : check_facets(&opened);
     if (wrong != NULL) {
         return refuse(wrong, why);

@@ -143,8 +143,7 @@ static inline bool entry_is_behind(const entry *e, int a, aset_real t) {
 static inline void lane_start(lane *l, int32_t *cell, const way *w, int a, const entry *e, aset_real corner, aset_real width,
                               int32_t count, int32_t stride) {
     aset_real x = (w->from[a] + e->t * w->rise[a] - corner) * (1 / width), last = (aset_real)(count - 1);
-    int32_t k = (int32_t)(x < last ? x : last);
-    k = k > 0 ? k : 0;
+    int32_t k = x > 0 ? (int32_t)(x < last ? x : last) : 0;
     l->from = w->from[a];
     l->inverse = w->inverse[a];
     l->plane = corner + (aset_real)(k + 1) * width;

@@ -114,7 +114,7 @@ static bool is_repeated(aset_flat *f, const voxel_box *box) {
 /* An object that the counter has taken. */
 static aset_status take_object(aset_flat *f, aset_vec3 low, aset_vec3 high) {
     aset_cells *cells = &f->space.cells;
-    voxel_box box = aset_slices_box(&f->space.slices, &f->stage, low, high);
+    voxel_box box = aset_slices_box(&f->space.slices, &f->stage, vec_scale(low, f->stage.scale), vec_scale(high, f->stage.scale));
     if (f->phase == FLAT_NUMBERS && f->number == 0) {
         f->number = find_number(f);
     }

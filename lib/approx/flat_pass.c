@@ -317,10 +317,12 @@ aset_status aset_flat_init(aset_flat *flat, aset_arena *arena, const aset_counte
     if (status != ASET_OK) {
         return status;
     }
-    if (flat->counts.objects > 0) {
-        flat->stage.low = flat->low;
-        flat->stage.high = flat->high;
-        flat->stage.margin = aset_object_margin(flat->low, flat->high);
+    if (flat->counts.objects > 0) { /* in its own lengths, as a scene has them */
+        aset_real scale = aset_scene_scale_for(real_max(vec_largest(flat->low), vec_largest(flat->high)));
+        flat->stage.scale = scale;
+        flat->stage.low = vec_scale(flat->low, scale);
+        flat->stage.high = vec_scale(flat->high, scale);
+        flat->stage.margin = aset_object_margin(flat->stage.low, flat->stage.high);
     }
     flat->stage_mark = aset_arena_mark(arena);
     flat->stage_sink = aset_scene_sink(&flat->stage);

@@ -5,6 +5,7 @@
 
 #define NEAREST R(0.001)     /* of the box's diagonal: so far before the eye all of it must lie */
 #define GROWN (R(1) / 16)    /* of a voxel */
+#define ROUNDING (16 * REAL_UNIT) /* of the coordinates */
 
 outlook_cells aset_outlook_cells_of(const aset_draft *draft) {
     outlook_cells c;
@@ -27,7 +28,16 @@ void aset_outlook_set_camera(aset_outlook *o, const camera *eye) {
     o->parallel = eye->orthographic;
 }
 
+/*
+ * By how much places among the cells, and a ray's crossings of slices, err when seen from there: voxels may be far thinner on
+ * one axis than on the others, and thinner than this their slices are not told apart.
+ */
+static aset_real rounding_at(const aset_outlook *o, const outlook_cells *cells) {
+    return ROUNDING * (vec_largest(o->from) + vec_largest(cells->middle) + cells->diagonal);
+}
+
 void aset_outlook_set_voxels(aset_outlook *o, const outlook_cells *cells, aset_real grown) {
+    grown += rounding_at(o, cells);
     aset_vec3 half = vec_add(vec_scale(cells->voxel, (1 + GROWN) / 2), vec(grown, grown, grown));
     o->half_across = outlook_extent(half, o->across);
     o->half_down = outlook_extent(half, o->down);
@@ -36,9 +46,13 @@ void aset_outlook_set_voxels(aset_outlook *o, const outlook_cells *cells, aset_r
 }
 
 bool aset_outlook_can_see(const aset_outlook *o, const outlook_cells *cells) {
-    aset_vec3 way = vec_sub(cells->middle, o->from);
+    aset_vec3 way = vec_sub(cells->middle, o->from), voxel = cells->voxel;
     aset_real before = vec_dot(way, o->forward) - outlook_extent(cells->half, o->forward);
-    return aset_vec_length(way) < OUTLOOK_FAR * cells->diagonal && (o->parallel || before > NEAREST * cells->diagonal);
+    aset_real thinnest = real_min(voxel.x, real_min(voxel.y, voxel.z));
+    /* a narrow enough angle, and places on the picture would leave the range of numbers */
+    aset_real farthest = 16 * (vec_largest(way) + cells->diagonal) * real_max(vec_largest(o->across), vec_largest(o->down));
+    return aset_vec_length(way) < OUTLOOK_FAR * cells->diagonal && thinnest > rounding_at(o, cells) && real_finite(farthest) &&
+           (o->parallel || before > NEAREST * cells->diagonal);
 }
 
 #endif

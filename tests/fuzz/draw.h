@@ -24,6 +24,28 @@ static inline aset_view view_of_box(const aset_vec3 *low, const aset_vec3 *high)
     return view;
 }
 
+#if ASET_WITH_DRAFTS
+/* Once more in beams and with a reach: the same pixels. */
+static inline void draw_aided(const aset_tracer *plain, const aset_view *view, aset_picture picture, const unsigned char *pixels) {
+    enum { VOXELS = 100, TILES = 6, BYTES = DRAW_PIXELS * DRAW_PIXELS * 4 };
+    uint32_t n_lights = plain->draft->stage.counts.lights;
+    aset_arena arena = open_arena(ASET_BYTES_SCRATCH(DRAW_DEPTH) + ASET_BYTES_BEAMS(VOXELS) + ASET_BYTES_REACH(TILES, n_lights));
+    aset_tracer tracer = *plain;
+    aset_scratch scratch;
+    aset_beams beams;
+    aset_reach reach;
+    unsigned char again[BYTES];
+    require(aset_scratch_init(&scratch, DRAW_DEPTH, &arena) == ASET_OK && aset_beams_init(&beams, VOXELS, &arena) == ASET_OK);
+    require(aset_reach_init(&reach, plain->draft, TILES, &arena) == ASET_OK);
+    scratch.beams = &beams;
+    tracer.reach = &reach;
+    picture.pixels = again;
+    require(aset_render_rows(&tracer, view, &picture, 0, DRAW_PIXELS, &scratch, NULL) == ASET_OK);
+    require(memcmp(pixels, again, sizeof again) == 0);
+    close_arena(&arena);
+}
+#endif
+
 static inline void draw_view(const aset_tracer *tracer, const aset_view *view) {
     aset_arena arena = open_arena(ASET_BYTES_SCRATCH(DRAW_DEPTH));
     aset_scratch scratch;
@@ -42,6 +64,11 @@ static inline void draw_view(const aset_tracer *tracer, const aset_view *view) {
     require(status == ASET_OK || status == ASET_ERR_GEOMETRY || status == ASET_ERR_ARGUMENT);
     require(status != ASET_OK || counts.primary == DRAW_PIXELS * DRAW_PIXELS);
     require(counts.primary_hit <= counts.primary && counts.shadow_hit <= counts.shadow);
+#if ASET_WITH_DRAFTS
+    if (tracer->draft != NULL && status == ASET_OK) {
+        draw_aided(tracer, view, picture, pixels);
+    }
+#endif
     free(pixels);
     close_arena(&arena);
 }

