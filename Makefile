@@ -305,9 +305,7 @@ deps: ## install what is missing: compiler, make, pkg-config, libpng, cmocka
 	bash tools/deps.sh
 
 deps-cluster: ## install what examples/cluster needs: GNU parallel, Open MPI
-	bash tools/deps-cluster.sh
-
-deps-consumers: ## install what make consumers and check-abi want besides: a C++ compiler, CMake, Meson, Ninja, abigail-tools
+	bash tools/deps.sh cluster
 
 deps-consumers: ## install what make consumers and check-abi want besides: a C++ compiler, CMake, Meson, MinGW, abigail-tools
 	bash tools/deps.sh consumers

@@ -155,7 +155,7 @@ static void test_self__spheres(void **state) {
         model_sphere(&m, dvec_real(dvec_along(dvec_make(0, 0, 0), away, dvec_of(random_direction(&r)))), radius);
         open_one(&s, &space, &tracer, &m);
         uint64_t enough = sum.left + RAYS;
-        for (int k = 0; k < 3 * RAYS && sum.left < enough; k++) { /* a needle is not always met */
+        for (int k = 0; k < 3 * RAYS && sum.left < enough; k++) { /* one smaller than its place can be told is not always met */
             bounce_off_sphere(&sum, &tracer, &r, m.things);
         }
         stage_close(&s);

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Installs what libaset's build and tests need and the machine lacks, through the system's package manager: deps.sh [consumers]
-# consumers: what make consumers and make check-abi want besides.
+# Installs what libaset's build and tests need and the machine lacks, through the system's package manager: deps.sh [consumers | cluster]
+# consumers: what make consumers and make check-abi want besides; cluster: what examples/cluster wants besides.
 set -eu
 
 missing=""
@@ -23,6 +23,10 @@ if [ "${1:-}" = consumers ]; then
     have x86_64-w64-mingw32-g++ || ! have apt-get || missing="$missing mingw"
     have abidiff || ! { have apt-get || have dnf; } || missing="$missing abigail"
 fi
+if [ "${1:-}" = cluster ]; then
+    have parallel || missing="$missing parallel"
+    { have mpicc && have mpirun; } || missing="$missing mpi"
+fi
 if [ -z "$missing" ]; then
     echo "deps: everything asked for is here; nothing to do"
     exit 0
@@ -33,6 +37,8 @@ echo "deps: missing:$missing"
 package() {
     case "$1:$2" in
     apt:c++ | apk:c++) echo g++ ;; dnf:c++) echo gcc-c++ ;; pacman:c++ | brew:c++) echo gcc ;;
+    apt:mpi) echo libopenmpi-dev openmpi-bin ;; dnf:mpi) echo openmpi-devel ;; pacman:mpi) echo openmpi ;;
+    apk:mpi) echo openmpi openmpi-dev ;; brew:mpi) echo open-mpi ;;
     apt:ninja | dnf:ninja) echo ninja-build ;; apt:mingw) echo g++-mingw-w64-x86-64 ;; apt:abigail) echo abigail-tools ;; *:abigail) echo libabigail ;;
     apt:compiler) echo gcc libc6-dev ;; apt:libpng) echo libpng-dev ;; apt:cmocka) echo libcmocka-dev ;;
     dnf:compiler) echo gcc ;; dnf:libpng) echo libpng-devel ;; dnf:cmocka) echo libcmocka-devel ;; dnf:pkg-config) echo pkgconf ;;
