@@ -16,6 +16,10 @@
 #define OWN_DISTANCE R(4)     /* a shadow ray passes facets that face away so near to its origin: they are its own surface's */
 #define CLEARANCE R(0.3)
 
+/* Columns of a voxel and of a block. */
+#define VOXEL R(4)
+#define BLOCK R(16)
+
 typedef struct way {
     const aset_draft *draft;
     aset_real o[3], d[3];
@@ -38,8 +42,15 @@ aset_real aset_draft_clearance(const aset_draft *draft) {
     return CLEARANCE * draft->column;
 }
 
+/* Where a ray meets a facet's plane, from the voxel's middle. */
+typedef struct facet_meeting {
+    aset_real t, u, v;
+    uint64_t record;
+    bool away;
+} facet_meeting;
+
 /* The ray against one facet of the voxel that it sees from q, its origin from the voxel's middle. */
-static inline bool meet(const way *w, const aset_real q[3], uint32_t number, aset_real t_min, draft_meeting *m) {
+static inline bool meet(const way *w, const aset_real q[3], uint32_t number, aset_real t_min, facet_meeting *m) {
     static const unsigned char next[4] = {1, 2, 0, 0};
     uint64_t record = facet_record(w->draft, number);
     uint32_t surface = facet_surface(w->draft, record);
@@ -49,40 +60,48 @@ static inline bool meet(const way *w, const aset_real q[3], uint32_t number, ase
     aset_real rate = w->d[a] - slope_u * w->d[u] - slope_v * w->d[v];
     aset_real t = (height + slope_u * q[u] + slope_v * q[v] - q[a]) / rate;
     aset_real ha = q[a] + t * w->d[a], hu = q[u] + t * w->d[u], hv = q[v] + t * w->d[v];
-    aset_real beside_u = real_abs(hu), beside_v = real_abs(hv), above = real_abs(ha);
-    bool in_voxel = (beside_u <= 2 + BEYOND_SIDES) & (beside_v <= 2 + BEYOND_SIDES) & (above <= 2 + BEYOND_HEIGHT) &
-                    (t > t_min) & (t < w->t_max);
-    if (!in_voxel) { /* rate may be 0: t is infinite then, or not a number, and nothing holds */
-        return false;
-    }
-    uint32_t footprint = facet_footprint(w->draft, record);
     m->t = t;
-    m->facet = number;
+    m->u = hu;
+    m->v = hv;
+    m->record = record;
     m->away = (rate > 0) != surface_down(surface);
-    m->cover = !w->any                                                   ? draft_soft_cover(footprint, hu + 2, hv + 2)
-               : draft_bit_at(footprint, (int)(hu + 2), (int)(hv + 2)) ? R(1)
-                                                                       : R(0);
-    return m->cover > 0;
+    /* rate may be 0: t is infinite then, or not a number, and nothing holds */
+    return (real_max(real_abs(hu), real_abs(hv)) <= 2 + BEYOND_SIDES) & (real_abs(ha) <= 2 + BEYOND_HEIGHT) & (t > t_min) &
+           (t < w->t_max);
 }
 
 /* The facets of one voxel, first to end, nearest first. True: nothing behind matters any more. */
-static bool visit_planes(way *w, const aset_real middle[3], uint32_t first, uint32_t end) {
+static bool visit_planes(way *w, const aset_real q[3], uint32_t first, uint32_t end) {
     draft_meeting found[DRAFT_FACETS_MAX];
-    aset_real q[3] = {w->o[0] - middle[0], w->o[1] - middle[1], w->o[2] - middle[2]};
     uint32_t n = 0;
     aset_real t_min = draft_cover_end(&w->cover);
     for (uint32_t i = first; i < end; i++) {
         draft_meeting m;
-        if (!meet(w, q, i, t_min, &m)) {
+        facet_meeting f;
+        if (!meet(w, q, i, t_min, &f)) {
             continue;
         }
-        if (!w->any) {
+        m.t = f.t;
+        m.facet = i;
+        m.away = f.away;
+        m.cover = draft_soft_cover(facet_footprint(w->draft, f.record), f.u + 2, f.v + 2);
+        if (m.cover > 0) {
             draft_meeting_insert(found, n++, &m);
-        } else if (!m.away || m.t > w->t_own) {
-            return true;
         }
     }
     return aset_draft_cover_add(&w->cover, found, n);
+}
+
+/* The same for a ray that asks whether anything is met at all. */
+static bool planes_block(way *w, const aset_real q[3], uint32_t first, uint32_t end) {
+    for (uint32_t i = first; i < end; i++) {
+        facet_meeting f;
+        if (meet(w, q, i, 0, &f) && (!f.away || f.t > w->t_own) &&
+            draft_bit_at(facet_footprint(w->draft, f.record), (int)(f.u + 2), (int)(f.v + 2))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /* The voxel itself is the hit, with the facet that faces the ray most. */
@@ -164,6 +183,23 @@ static inline void lane_start(lane *l, int32_t *cell, const way *w, int a, const
     l->add = w->turned[a] ? -stride : stride;
 }
 
+/* The same in a block of four voxels whose corner is at corner columns: of three planes, those behind are counted. */
+static inline void lane_start_in_block(lane *l, int32_t *cell, const way *w, int a, const entry *e, aset_real corner, int32_t stride) {
+    aset_real from = w->from[a], inverse = w->inverse[a];
+    aset_real first = (corner + VOXEL - from) * inverse, second = (corner + 2 * VOXEL - from) * inverse,
+              third = (corner + 3 * VOXEL - from) * inverse;
+    int32_t tie = (e->axis < 0) | (a <= e->axis);
+    int32_t k = ((first < e->t) | ((first == e->t) & tie)) + ((second < e->t) | ((second == e->t) & tie)) +
+                ((third < e->t) | ((third == e->t) & tie));
+    l->from = from;
+    l->inverse = inverse;
+    l->plane = corner + (aset_real)(k + 1) * VOXEL;
+    l->next = (l->plane - from) * inverse;
+    l->left = 3 - k;
+    *cell += (w->turned[a] ? l->left : k) * stride;
+    l->add = w->turned[a] ? -stride : stride;
+}
+
 /* False: out of the box. */
 static inline bool lane_cross(lane *l, int32_t *cell, aset_real *t, aset_real width) {
     *t = l->next;
@@ -193,42 +229,39 @@ static inline aset_real block_corner(const way *w, int a, int32_t k, int32_t n) 
     return (aset_real)(16 * (w->turned[a] ? k - n : k));
 }
 
-/* Columns of a voxel and of a block. */
-#define VOXEL R(4)
-#define BLOCK R(16)
+/* The ray's origin from a voxel's middle on an axis whose lane is in the voxel: planes are whole numbers, so it is exact. */
+static inline aset_real from_middle(const way *w, int a, const lane *l) {
+    aset_real q = l->from - (l->plane - VOXEL / 2);
+    return w->turned[a] ? -q : q;
+}
 
-static bool visit_voxel(way *w, const uint32_t at[3], uint32_t block, uint64_t marks, unsigned bit, const entry *e) {
+static bool visit_voxel(way *w, const lanes *l, uint32_t block, uint64_t marks, const entry *e) {
     uint32_t first, end;
     w->counts.nonempty++;
-    draft_find_facets(w->draft, block, bits_count(marks & ((UINT64_C(1) << bit) - 1)), &first, &end);
+    draft_find_facets(w->draft, block, bits_count(marks & ((UINT64_C(1) << l->cell) - 1)), &first, &end);
     if (w->mode == DRAFT_PLANE) {
-        aset_real middle[3] = {(aset_real)(int32_t)(at[0] * 16 + bit % 4 * 4 + 2), (aset_real)(int32_t)(at[1] * 16 + bit / 4 % 4 * 4 + 2),
-                               (aset_real)(int32_t)(at[2] * 16 + bit / 16 * 4 + 2)};
-        return visit_planes(w, middle, first, end);
+        const aset_real q[3] = {from_middle(w, 0, &l->x), from_middle(w, 1, &l->y), from_middle(w, 2, &l->z)};
+        return w->any ? planes_block(w, q, first, end) : visit_planes(w, q, first, end);
     }
     return visit_side(w, e->t, e->axis, first, end);
 }
 
 /* outer: the walk of blocks, whose place gives this one's corner. */
 static bool walk_block(way *w, uint32_t block, entry e, const lanes *outer) {
-    const uint32_t *n = w->draft->blocks;
     uint64_t marks = draft_marks(w->draft, block);
     const aset_real corner[3] = {outer->x.plane - BLOCK, outer->y.plane - BLOCK, outer->z.plane - BLOCK};
     uint64_t cells = 0;
     bool done = false;
     lanes l;
     l.cell = 0;
-    lane_start(&l.x, &l.cell, w, 0, &e, corner[0], VOXEL, 4, 1);
-    lane_start(&l.y, &l.cell, w, 1, &e, corner[1], VOXEL, 4, 4);
-    lane_start(&l.z, &l.cell, w, 2, &e, corner[2], VOXEL, 4, 16);
+    lane_start_in_block(&l.x, &l.cell, w, 0, &e, corner[0], 1);
+    lane_start_in_block(&l.y, &l.cell, w, 1, &e, corner[1], 4);
+    lane_start_in_block(&l.z, &l.cell, w, 2, &e, corner[2], 16);
     do {
         cells++;
-        if ((marks >> l.cell & 1u) != 0) {
-            const uint32_t at[3] = {(uint32_t)outer->cell % n[0], (uint32_t)outer->cell / n[0] % n[1], (uint32_t)outer->cell / n[0] / n[1]};
-            if (visit_voxel(w, at, block, marks, (unsigned)l.cell, &e)) {
-                done = true;
-                break;
-            }
+        if ((marks >> l.cell & 1u) != 0 && visit_voxel(w, &l, block, marks, &e)) {
+            done = true;
+            break;
         }
     } while (lanes_step(&l, &e, VOXEL) && e.t < w->t_last);
     w->counts.cells += cells;

@@ -87,7 +87,7 @@ static inline uint64_t words_get(const uint32_t *words, unsigned width, size_t i
     unsigned shift = (unsigned)(bit & 31u);
     const uint32_t *w = words + (bit >> 5);
     uint64_t value = ((uint64_t)w[0] | (uint64_t)w[1] << 32) >> shift;
-    if (shift > 0 && shift + width > 64) {
+    if (shift + width > 64) {
         value |= (uint64_t)w[2] << (64 - shift);
     }
     return width < 64 ? value & ((UINT64_C(1) << width) - 1) : value;

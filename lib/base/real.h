@@ -55,7 +55,11 @@ static inline aset_real real_sqrt(aset_real x) {
 }
 
 static inline aset_real real_abs(aset_real x) {
-    return x < 0 ? -x : x;
+#if ASET_REAL_BITS == 32
+    return fabsf(x);
+#else
+    return fabs(x);
+#endif
 }
 
 static inline aset_real real_min(aset_real a, aset_real b) {
