@@ -26,6 +26,7 @@ void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, const aset
                            const aset_real *t_max, uint32_t n) {
     beam->draft = draft;
     beam->n_visited = 0;
+    beam->n_left = n;
     EACH(i) {
         uint32_t k = (uint32_t)i < n ? (uint32_t)i : 0;
         set_axis(beam, 0, i, origins[k].x, directions[k].x);
@@ -92,10 +93,45 @@ static int32_t meet_plane(meetings *restrict m, const draft_beam *restrict b, co
     return n;
 }
 
+/* Those of the rays that are set, first to last; how many. */
+static uint32_t list_set(uint32_t *restrict list, const int32_t *restrict set) {
+    uint32_t n = 0;
+    EACH(i) {
+        list[n] = (uint32_t)i;
+        n += (uint32_t)(set[i] != 0);
+    }
+    return n;
+}
+
+/* What the rays have met of one voxel's facets. */
+typedef struct voxel_meetings {
+    draft_meeting found[DRAFT_BEAM][DRAFT_FACETS_MAX];
+    int32_t n[DRAFT_BEAM];
+} voxel_meetings;
+
+static void meet_facet(voxel_meetings *v, const draft_beam *beam, const int32_t *through, const aset_real middle[3], uint32_t number) {
+    meetings m;
+    uint32_t list[DRAFT_BEAM];
+    uint64_t record = facet_record(beam->draft, number);
+    uint32_t surface = facet_surface(beam->draft, record);
+    if (meet_plane(&m, beam, through, middle, record, surface) == 0) {
+        return;
+    }
+    uint32_t n = list_set(list, m.met), footprint = facet_footprint(beam->draft, record);
+    for (uint32_t k = 0; k < n; k++) {
+        uint32_t i = list[k];
+        draft_meeting one = {m.t[i], draft_soft_cover(footprint, m.u[i], m.v[i]), number,
+                             (m.rate[i] > 0) != surface_down(surface)};
+        if (one.cover > 0) {
+            draft_meeting_insert(v->found[i], (uint32_t)v->n[i]++, &one);
+        }
+    }
+}
+
 bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k) {
     int32_t through[DRAFT_BEAM];
-    draft_meeting found[DRAFT_BEAM][DRAFT_FACETS_MAX];
-    uint32_t n_found[DRAFT_BEAM] = {0}, first, end;
+    uint32_t list[DRAFT_BEAM], first, end;
+    voxel_meetings v;
     const aset_real low[3] = {(aset_real)(int32_t)(at[0] * 16 + k % 4 * 4), (aset_real)(int32_t)(at[1] * 16 + k / 4 % 4 * 4),
                               (aset_real)(int32_t)(at[2] * 16 + k / 16 * 4)};
     int32_t n_through = come_through(through, beam, low);
@@ -104,35 +140,19 @@ bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dens
     }
     const aset_real middle[3] = {low[0] + 2, low[1] + 2, low[2] + 2};
     beam->n_visited += (uint64_t)n_through;
+    memset(v.n, 0, sizeof v.n);
     draft_find_facets(beam->draft, dense, bits_count(draft_marks(beam->draft, dense) & ((UINT64_C(1) << k) - 1)), &first, &end);
     for (uint32_t f = first; f < end; f++) {
-        meetings m;
-        uint64_t record = facet_record(beam->draft, f);
-        uint32_t surface = facet_surface(beam->draft, record);
-        if (meet_plane(&m, beam, through, middle, record, surface) == 0) {
-            continue;
-        }
-        uint32_t footprint = facet_footprint(beam->draft, record);
-        EACH(i) {
-            if (m.met[i]) {
-                draft_meeting one = {m.t[i], draft_soft_cover(footprint, m.u[i], m.v[i]), f,
-                                     (m.rate[i] > 0) != surface_down(surface)};
-                if (one.cover > 0) {
-                    draft_meeting_insert(found[i], n_found[i]++, &one);
-                }
-            }
-        }
+        meet_facet(&v, beam, through, middle, f);
     }
-    bool done = true;
-    EACH(i) {
-        if (n_found[i] > 0) {
-            (void)aset_draft_cover_add(&beam->cover[i], found[i], n_found[i]);
-            beam->left[i] = beam->cover[i].left;
-            beam->end[i] = draft_cover_end(&beam->cover[i]);
-        }
-        done = done && !(beam->left[i] > 0);
+    uint32_t n = list_set(list, v.n);
+    for (uint32_t j = 0; j < n; j++) {
+        uint32_t i = list[j];
+        beam->n_left -= aset_draft_cover_add(&beam->cover[i], v.found[i], (uint32_t)v.n[i]);
+        beam->left[i] = beam->cover[i].left;
+        beam->end[i] = draft_cover_end(&beam->cover[i]);
     }
-    return done;
+    return beam->n_left == 0;
 }
 
 #endif

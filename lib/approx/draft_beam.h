@@ -19,6 +19,7 @@ typedef struct draft_beam {
     aset_real left[DRAFT_BEAM]; /* 0: the ray is done */
     draft_cover cover[DRAFT_BEAM];
     draft_layer layers[DRAFT_BEAM][DRAFT_LAYERS_MAX];
+    uint32_t n_left;    /* rays that are not done */
     uint64_t n_visited; /* voxels, of all rays */
 } draft_beam;
 

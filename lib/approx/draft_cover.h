@@ -50,6 +50,12 @@ static inline bool draft_bit_at(uint32_t footprint, int i, int j) {
     return (footprint >> (i + 4 * j) & 1u) != 0;
 }
 
+/* A footprint's row of four columns from column i to i + 1, i from -1 to 3: outside lies what lies at the end. Two bits. */
+static inline unsigned draft_pair_in_row(uint32_t footprint, int row, int i) {
+    uint32_t four = footprint >> 4 * row & 15u, six = four << 1 | (four & 1u) | (four & 8u) << 2;
+    return six >> (i + 1) & 3u;
+}
+
 /* How much of a ray through (u, v) the footprint stops: its columns interpolated, so that edges are soft. */
 static inline aset_real draft_soft_cover(uint32_t footprint, aset_real u, aset_real v) {
     if (footprint == 0xffffu) {
@@ -58,10 +64,9 @@ static inline aset_real draft_soft_cover(uint32_t footprint, aset_real u, aset_r
     aset_real x = u - R(0.5), y = v - R(0.5);
     int i = (int)(x + 1) - 1, j = (int)(y + 1) - 1; /* floor: both are -1 to 3 */
     aset_real a = x - (aset_real)i, b = y - (aset_real)j;
-    unsigned left = i < 0 ? 0 : (unsigned)i, right = i < 3 ? (unsigned)(i + 1) : 3u;
-    unsigned low = footprint >> (j < 0 ? 0 : 4 * j), high = footprint >> (j < 3 ? 4 * (j + 1) : 12);
-    aset_real mean = (1 - b) * ((1 - a) * (aset_real)(int)(low >> left & 1u) + a * (aset_real)(int)(low >> right & 1u)) +
-                     b * ((1 - a) * (aset_real)(int)(high >> left & 1u) + a * (aset_real)(int)(high >> right & 1u));
+    const aset_real of_pair[4] = {0, 1 - a, a, (1 - a) + a}; /* between two columns, of which none, one or both are covered */
+    aset_real mean = (1 - b) * of_pair[draft_pair_in_row(footprint, j < 0 ? 0 : j, i)] +
+                     b * of_pair[draft_pair_in_row(footprint, j < 3 ? j + 1 : 3, i)];
     aset_real cover = (mean - R(0.5)) * SOFTNESS + R(0.5) + SOFT_BIAS;
     return cover < COVER_LEAST ? 0 : cover > COVER_MOST ? 1 : cover;
 }
