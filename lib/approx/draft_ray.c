@@ -70,7 +70,10 @@ static inline bool meet(const way *w, const aset_real q[3], uint32_t number, ase
            (t < w->t_max);
 }
 
-/* The facets of one voxel, first to end, nearest first. True: nothing behind matters any more. */
+/*
+ * The facets of one voxel, first to end, nearest first. True: nothing behind matters any more. A ray that asks whether anything is
+ * met at all takes a footprint's bits as they are, and passes its own surface.
+ */
 static bool visit_planes(way *w, const aset_real q[3], uint32_t first, uint32_t end) {
     draft_meeting found[DRAFT_FACETS_MAX];
     uint32_t n = 0;
@@ -81,27 +84,22 @@ static bool visit_planes(way *w, const aset_real q[3], uint32_t first, uint32_t 
         if (!meet(w, q, i, t_min, &f)) {
             continue;
         }
+        uint32_t footprint = facet_footprint(w->draft, f.record);
+        if (w->any) {
+            if ((!f.away || f.t > w->t_own) && draft_bit_at(footprint, (int)(f.u + 2), (int)(f.v + 2))) {
+                return true;
+            }
+            continue;
+        }
         m.t = f.t;
         m.facet = i;
         m.away = f.away;
-        m.cover = draft_soft_cover(facet_footprint(w->draft, f.record), f.u + 2, f.v + 2);
+        m.cover = draft_soft_cover(footprint, f.u + 2, f.v + 2);
         if (m.cover > 0) {
             draft_meeting_insert(found, n++, &m);
         }
     }
-    return aset_draft_cover_add(&w->cover, found, n);
-}
-
-/* The same for a ray that asks whether anything is met at all. */
-static bool planes_block(way *w, const aset_real q[3], uint32_t first, uint32_t end) {
-    for (uint32_t i = first; i < end; i++) {
-        facet_meeting f;
-        if (meet(w, q, i, 0, &f) && (!f.away || f.t > w->t_own) &&
-            draft_bit_at(facet_footprint(w->draft, f.record), (int)(f.u + 2), (int)(f.v + 2))) {
-            return true;
-        }
-    }
-    return false;
+    return n > 0 && aset_draft_cover_add(&w->cover, found, n);
 }
 
 /* The voxel itself is the hit, with the facet that faces the ray most. */
@@ -241,7 +239,7 @@ static bool visit_voxel(way *w, const lanes *l, uint32_t block, uint64_t marks, 
     draft_find_facets(w->draft, block, bits_count(marks & ((UINT64_C(1) << l->cell) - 1)), &first, &end);
     if (w->mode == DRAFT_PLANE) {
         const aset_real q[3] = {from_middle(w, 0, &l->x), from_middle(w, 1, &l->y), from_middle(w, 2, &l->z)};
-        return w->any ? planes_block(w, q, first, end) : visit_planes(w, q, first, end);
+        return visit_planes(w, q, first, end);
     }
     return visit_side(w, e->t, e->axis, first, end);
 }
@@ -271,8 +269,15 @@ static bool walk_block(way *w, uint32_t block, entry e, const lanes *outer) {
 /* Where the ray begins in the box; false if nowhere. */
 static inline bool clip(const way *w, entry *e) {
     aset_real t_out = REAL_INFINITY;
+    bool within = true;
     e->t = 0;
     e->axis = -1;
+    for (int a = 0; a < 3; a++) {
+        within = within & (w->o[a] >= 0) & (w->o[a] <= (aset_real)(int32_t)w->draft->n[a] * VOXEL);
+    }
+    if (within) {
+        return w->t_last > 0;
+    }
     for (int a = 0; a < 3; a++) {
         aset_real side = (aset_real)(int32_t)w->draft->n[a] * VOXEL, low = w->turned[a] ? -side : 0;
         aset_real in = (low - w->from[a]) * w->inverse[a], out = (low + side - w->from[a]) * w->inverse[a];

@@ -21,7 +21,7 @@
 
 #define BEAM_RAYS ((uint32_t)DRAFT_BEAM)
 #define BEAM_ROWS 8u
-#define SEGMENT 64u
+#define SEGMENT 32u
 #define NONE UINT32_MAX
 /* Pixels that an outline's edges may err by: a picture's width has 16 bits, and a float 24. */
 #define PAD R(0.02)
@@ -231,15 +231,15 @@ static void make_band(aset_beams *beams, const drawing *d, uint32_t band) {
 }
 
 /* The band's voxels that a row meets. False: there were too many for the band. */
-static bool begin_row(aset_beams *beams, const drawing *d, uint32_t row) {
+static bool begin_row(aset_beams *beams, const drawing *d, uint32_t row, uint32_t n_rows) {
     if (beams->band != row / BEAM_ROWS) {
         make_band(beams, d, row / BEAM_ROWS);
     }
-    uint32_t in_band = row % BEAM_ROWS, n = 0;
+    uint32_t in_band = row % BEAM_ROWS, last = in_band + n_rows - 1, n = 0;
     for (uint32_t i = 0; i < beams->n_voxels; i++) {
         const aset_beam_voxel *v = beams->voxels + i;
         beams->in_row[n] = (uint16_t)i;
-        n += (v->top <= in_band) & (v->bottom >= in_band);
+        n += (v->top <= last) & (v->bottom >= in_band);
     }
     beams->n_in_row = n;
     beams->segment = NONE;
@@ -247,7 +247,7 @@ static bool begin_row(aset_beams *beams, const drawing *d, uint32_t row) {
 }
 
 /* Chooses the voxels before the pixels from column on, a multiple of BEAM_RAYS. False: there are none. */
-static bool choose(aset_beams *beams, uint32_t column) {
+static bool choose(aset_beams *beams, uint32_t column, uint32_t width) {
     if (beams->segment != column / SEGMENT) {
         uint32_t from = column / SEGMENT * SEGMENT, to = from + SEGMENT - 1, n = 0;
         for (uint32_t i = 0; i < beams->n_in_row; i++) {
@@ -258,7 +258,7 @@ static bool choose(aset_beams *beams, uint32_t column) {
         beams->n_in_segment = n;
         beams->segment = column / SEGMENT;
     }
-    uint32_t last = column + BEAM_RAYS - 1, n = 0;
+    uint32_t last = column + width - 1, n = 0;
     for (uint32_t i = 0; i < beams->n_in_segment; i++) {
         const aset_beam_voxel *v = beams->voxels + beams->in_segment[i];
         beams->chosen[n] = beams->in_segment[i];
@@ -308,15 +308,18 @@ static void draw_background(const drawing *d, uint32_t n, unsigned char *at) {
     d->statistics->primary += (uint64_t)n * d->samples * d->samples;
 }
 
-/* n pixels whose rays go in one beam. */
-static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column, uint32_t row, uint32_t n, unsigned char *at) {
+/* The pixels whose rays go in one beam: width columns of rows rows. */
+static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column, uint32_t row, uint32_t width, uint32_t rows,
+                      unsigned char *at, size_t stride) {
     beam_rays rays;
     gathered g[BEAM_RAYS];
+    uint32_t n = width * rows;
     memset(g, 0, sizeof g);
     for (uint32_t j = 0; j < d->samples; j++) {
         for (uint32_t i = 0; i < d->samples; i++) {
             for (uint32_t k = 0; k < n; k++) {
-                aset_drawing_ray(d, column + k, row, i, j, &rays.origins[k], &rays.directions[k]);
+                uint32_t below = k >= width;
+                aset_drawing_ray(d, column + k - (below ? width : 0), row + below, i, j, &rays.origins[k], &rays.directions[k]);
             }
             meet(beams, &rays, n, d->tracer, d->statistics);
             for (uint32_t k = 0; k < n; k++) {
@@ -327,23 +330,27 @@ static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column
             }
         }
     }
+    size_t bytes = aset_format_bytes(d->picture->format);
     for (uint32_t k = 0; k < n; k++) {
-        aset_drawing_put(d, &g[k], at + k * aset_format_bytes(d->picture->format));
+        aset_drawing_put(d, &g[k], k >= width ? at + stride + (k - width) * bytes : at + k * bytes);
     }
 }
 
-static bool draw_row(aset_beams *beams, const drawing *d, uint32_t row, unsigned char *line) {
+static bool draw_row(aset_beams *beams, const drawing *d, uint32_t row, uint32_t rows, unsigned char *line, size_t stride) {
     size_t bytes = aset_format_bytes(d->picture->format);
     bool alone = d->tracer->draft->stage.counts.objects == 0; /* nothing is met but voxels */
-    if (!begin_row(beams, d, row)) {
+    uint32_t most = BEAM_RAYS / rows;
+    if (!begin_row(beams, d, row, rows)) {
         return false;
     }
-    for (uint32_t column = 0; column < d->columns; column += BEAM_RAYS) {
-        uint32_t n = d->columns - column < BEAM_RAYS ? d->columns - column : BEAM_RAYS;
-        if (choose(beams, column) || !alone) {
-            draw_beam(beams, d, column, row, n, line + column * bytes);
+    for (uint32_t column = 0; column < d->columns; column += most) {
+        uint32_t width = d->columns - column < most ? d->columns - column : most;
+        if (choose(beams, column, most) || !alone) {
+            draw_beam(beams, d, column, row, width, rows, line + column * bytes, stride);
         } else {
-            draw_background(d, n, line + column * bytes);
+            for (uint32_t i = 0; i < rows; i++) {
+                draw_background(d, width, line + i * stride + column * bytes);
+            }
         }
     }
     return true;

@@ -38,7 +38,7 @@ struct aset_beam_calls {
     /* Whether they can draw this picture at all; before its first row. */
     bool (*begin)(aset_beams *beams, const drawing *d);
     /* False: nothing was drawn, the row's rays must be traced one by one. */
-    bool (*draw_row)(aset_beams *beams, const drawing *d, uint32_t row, unsigned char *line);
+    bool (*draw_row)(aset_beams *beams, const drawing *d, uint32_t row, uint32_t rows, unsigned char *line, size_t stride);
 };
 #endif
 

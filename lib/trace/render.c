@@ -89,7 +89,8 @@ static void draw_pixel(const drawing *d, uint32_t column, uint32_t row, unsigned
 
 static void draw_row(const drawing *d, aset_beams *beams, uint32_t row, unsigned char *line) {
 #if ASET_WITH_DRAFTS
-    if (beams != NULL && beams->calls->draw_row(beams, d, row, line)) {
+    if (beams != NULL && d->picture->stride && d->rows%2==0) { if (row%2==1) return; if( beams->calls->draw_row(beams, d, row, 2, line, d->picture->stride)) return; }
+    if (beams != NULL && beams->calls->draw_row(beams, d, row, 1, line, d->picture->stride)) {
         return;
     }
 #endif
