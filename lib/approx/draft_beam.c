@@ -117,14 +117,12 @@ static void meet_facet(voxel_meetings *v, const draft_beam *beam, const int32_t 
     if (meet_plane(&m, beam, through, middle, record, surface) == 0) {
         return;
     }
-    uint32_t n = list_set(list, m.met), footprint = facet_footprint(beam->draft, record);
+    uint32_t n = list_set(list, m.met);
+    uint16_t footprint = (uint16_t)facet_footprint(beam->draft, record);
     for (uint32_t k = 0; k < n; k++) {
         uint32_t i = list[k];
-        draft_meeting one = {m.t[i], draft_soft_cover(footprint, m.u[i], m.v[i]), number,
-                             (m.rate[i] > 0) != surface_down(surface)};
-        if (one.cover > 0) {
-            draft_meeting_insert(v->found[i], (uint32_t)v->n[i]++, &one);
-        }
+        draft_meeting one = {m.t[i], m.u[i], m.v[i], number, footprint, (m.rate[i] > 0) != surface_down(surface)};
+        draft_meeting_insert(v->found[i], (uint32_t)v->n[i]++, &one);
     }
 }
 

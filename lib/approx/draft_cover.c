@@ -3,12 +3,12 @@
 
 #if ASET_WITH_DRAFTS
 
-static void add_layer(draft_cover *c, const draft_meeting *m) {
+static void add_layer(draft_cover *c, const draft_meeting *m, aset_real cover) {
     draft_layer *layer = c->layers + c->n++;
     layer->t = m->t;
     layer->facet = m->facet;
     layer->face = 0;
-    layer->cover = c->left * m->cover;
+    layer->cover = c->left * cover;
     c->left -= layer->cover;
     if (c->n == DRAFT_LAYERS_MAX || c->left < COVER_LEAST) {
         layer->cover += c->left;
@@ -18,11 +18,15 @@ static void add_layer(draft_cover *c, const draft_meeting *m) {
 
 bool aset_draft_cover_add(draft_cover *c, const draft_meeting *found, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
+        aset_real cover = draft_soft_cover(found[i].footprint, found[i].u, found[i].v);
+        if (!(cover > 0)) {
+            continue;
+        }
         if (c->n > 0 && found[i].away) { /* the surface's inside: the ray came through a seam, not past an edge */
             c->layers[c->n - 1].cover += c->left;
             c->left = 0;
         } else {
-            add_layer(c, &found[i]);
+            add_layer(c, &found[i], cover);
         }
         if (!(c->left > 0)) {
             return true;

@@ -20,10 +20,11 @@
 /* A voxel has a facet on each of its sides at most. */
 #define DRAFT_FACETS_MAX 6
 
-/* One facet's answer. */
+/* Where a ray meets one facet's plane, (u, v) in its voxel. How much of the ray it stops is told where that matters. */
 typedef struct draft_meeting {
-    aset_real t, cover;
+    aset_real t, u, v;
     uint32_t facet;
+    uint16_t footprint;
     bool away; /* it faces away from the ray's origin */
 } draft_meeting;
 

@@ -42,15 +42,8 @@ aset_real aset_draft_clearance(const aset_draft *draft) {
     return CLEARANCE * draft->column;
 }
 
-/* Where a ray meets a facet's plane, from the voxel's middle. */
-typedef struct facet_meeting {
-    aset_real t, u, v;
-    uint64_t record;
-    bool away;
-} facet_meeting;
-
 /* The ray against one facet of the voxel that it sees from q, its origin from the voxel's middle. */
-static inline bool meet(const way *w, const aset_real q[3], uint32_t number, aset_real t_min, facet_meeting *m) {
+static inline bool meet(const way *w, const aset_real q[3], uint32_t number, aset_real t_min, draft_meeting *m) {
     static const unsigned char next[4] = {1, 2, 0, 0};
     uint64_t record = facet_record(w->draft, number);
     uint32_t surface = facet_surface(w->draft, record);
@@ -60,43 +53,39 @@ static inline bool meet(const way *w, const aset_real q[3], uint32_t number, ase
     aset_real rate = w->d[a] - slope_u * w->d[u] - slope_v * w->d[v];
     aset_real t = (height + slope_u * q[u] + slope_v * q[v] - q[a]) / rate;
     aset_real ha = q[a] + t * w->d[a], hu = q[u] + t * w->d[u], hv = q[v] + t * w->d[v];
+    bool in_voxel = (real_max(real_abs(hu), real_abs(hv)) <= 2 + BEYOND_SIDES) & (real_abs(ha) <= 2 + BEYOND_HEIGHT) &
+                    (t > t_min) & (t < w->t_max);
+    if (!in_voxel) { /* rate may be 0: t is infinite then, or not a number, and nothing holds */
+        return false;
+    }
     m->t = t;
-    m->u = hu;
-    m->v = hv;
-    m->record = record;
+    m->u = hu + 2;
+    m->v = hv + 2;
+    m->facet = number;
+    m->footprint = (uint16_t)facet_footprint(w->draft, record);
     m->away = (rate > 0) != surface_down(surface);
-    /* rate may be 0: t is infinite then, or not a number, and nothing holds */
-    return (real_max(real_abs(hu), real_abs(hv)) <= 2 + BEYOND_SIDES) & (real_abs(ha) <= 2 + BEYOND_HEIGHT) & (t > t_min) &
-           (t < w->t_max);
+    return true;
 }
 
-/*
- * The facets of one voxel, first to end, nearest first. True: nothing behind matters any more. A ray that asks whether anything is
- * met at all takes a footprint's bits as they are, and passes its own surface.
- */
+/* Is it in a shadow ray's way? Its own surface stops no ray. */
+static inline bool stops(const way *w, const draft_meeting *m) {
+    return (!m->away || m->t > w->t_own) && draft_bit_at(m->footprint, (int)m->u, (int)m->v);
+}
+
+/* The facets of one voxel, first to end, nearest first. True: nothing behind matters any more. */
 static bool visit_planes(way *w, const aset_real q[3], uint32_t first, uint32_t end) {
     draft_meeting found[DRAFT_FACETS_MAX];
     uint32_t n = 0;
     aset_real t_min = draft_cover_end(&w->cover);
     for (uint32_t i = first; i < end; i++) {
         draft_meeting m;
-        facet_meeting f;
-        if (!meet(w, q, i, t_min, &f)) {
+        if (!meet(w, q, i, t_min, &m)) {
             continue;
         }
-        uint32_t footprint = facet_footprint(w->draft, f.record);
-        if (w->any) {
-            if ((!f.away || f.t > w->t_own) && draft_bit_at(footprint, (int)(f.u + 2), (int)(f.v + 2))) {
-                return true;
-            }
-            continue;
-        }
-        m.t = f.t;
-        m.facet = i;
-        m.away = f.away;
-        m.cover = draft_soft_cover(footprint, f.u + 2, f.v + 2);
-        if (m.cover > 0) {
+        if (!w->any) {
             draft_meeting_insert(found, n++, &m);
+        } else if (stops(w, &m)) {
+            return true;
         }
     }
     return n > 0 && aset_draft_cover_add(&w->cover, found, n);
@@ -104,7 +93,7 @@ static bool visit_planes(way *w, const aset_real q[3], uint32_t first, uint32_t 
 
 /* The voxel itself is the hit, with the facet that faces the ray most. */
 static bool visit_side(way *w, aset_real t, int axis, uint32_t first, uint32_t end) {
-    draft_meeting m = {t, 1, first, false};
+    draft_meeting m = {t, 2, 2, first, 0xffffu, false};
     aset_real best = REAL_INFINITY;
     if (!(t > 0 && t < w->t_max) || axis < 0) { /* approximate rays ignore the cell that they start in */
         return false;
