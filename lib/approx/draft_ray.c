@@ -1,8 +1,7 @@
 /*
- * draft_ray.c - the way of a ray through a draft: blocks of 4 x 4 x 4 voxels, in those that are not empty the voxels, in those
- * that are marked the facets. Two nested walks of the same kind (Amanatides and Woo 1987), the crossings
- * of an axis t apart by a constant; of an empty block nothing but its bit in the map is looked at. A walk ends after as many steps as there are
- * slices to cross.
+ * draft_ray.c - the way of a ray through a draft: in blocks of 4 x 4 x 4 voxels that are not empty from voxel to voxel, in those
+ * that are marked the facets; through an empty block, of which nothing but its bit in the map is looked at, at once. It is the walk
+ * of Amanatides and Woo (1987), which ends after as many steps as there are slices to cross.
  *
  * Everything is in columns here (facet.h), t excepted, which stays in the scene's lengths: the ray is o + t d with o and d
  * divided by a column's size.
@@ -16,9 +15,8 @@
 #define OWN_DISTANCE R(4)     /* a shadow ray passes facets that face away so near to its origin: they are its own surface's */
 #define CLEARANCE R(0.3)
 
-/* Columns of a voxel and of a block. */
+/* Columns of a voxel. */
 #define VOXEL R(4)
-#define BLOCK R(16)
 
 typedef struct way {
     const aset_draft *draft;
@@ -116,20 +114,19 @@ static bool visit_side(way *w, aset_real t, int axis, uint32_t first, uint32_t e
 }
 
 /*
- * One of the two nested walks, in a box of cells. For each axis: t of the next crossing and the plane that it is of, how many
- * cells are left before the box's end, what a crossing adds to the cell's number. A plane's t is always computed from the
- * plane alone, in both walks alike, and at equal t the lower axis crosses first: so a ray's way is one fixed chain of cells,
- * wherever on it a walk begins. Fields and no arrays, so that they can live in registers.
+ * Where a walk is on one axis. A plane's t is always computed from the plane alone, and at equal t the lower axis crosses first: so
+ * a ray's way is one fixed chain of cells, wherever on it a walk begins. Fields and no arrays, so that they can live in
+ * registers.
  */
 typedef struct lane {
-    aset_real next, plane;
+    aset_real next, plane;   /* the voxel's far side, and t there */
     aset_real from, inverse; /* the way's */
-    int32_t left, add;
+    int32_t at, add;         /* the voxel, not turned, and what a crossing adds */
+    int32_t left;            /* voxels to the box's end; the box is of whole blocks, so the lowest two bits: to the block's */
 } lane;
 
 typedef struct lanes {
     lane x, y, z;
-    int32_t cell;
 } lanes;
 
 /* Where a walk begins: t, and the axis of the last crossing there, -1 for all that are at t. */
@@ -142,78 +139,93 @@ static inline bool entry_is_behind(const entry *e, int a, aset_real t) {
     return t < e->t || (t == e->t && (e->axis < 0 || a <= e->axis));
 }
 
-/*
- * Axis a of a box of count cells whose corner (of the turned box) is at corner columns; stride: of the cells' numbers. The cell
- * is that of the place at t, but for rounding: which side of a plane it is on its crossing decides.
- */
-static inline void lane_start(lane *l, int32_t *cell, const way *w, int a, const entry *e, aset_real corner, aset_real width,
-                              int32_t count, int32_t stride) {
-    aset_real x = (w->from[a] + e->t * w->rise[a] - corner) * (1 / width), last = (aset_real)(count - 1);
+/* The voxel of the place at t, but for rounding: which side of a plane it is on its crossing decides. */
+static inline void lane_start(lane *l, const way *w, int a, const entry *e) {
+    int32_t count = (int32_t)w->draft->blocks[a] * 4;
+    aset_real corner = w->turned[a] ? (aset_real)(-4 * count) : 0;
+    aset_real x = (w->from[a] + e->t * w->rise[a] - corner) * (1 / VOXEL), last = (aset_real)(count - 1);
     int32_t k = x > 0 ? (int32_t)(x < last ? x : last) : 0;
     l->from = w->from[a];
     l->inverse = w->inverse[a];
-    l->plane = corner + (aset_real)(k + 1) * width;
+    l->plane = corner + (aset_real)(k + 1) * VOXEL;
     l->next = (l->plane - l->from) * l->inverse;
     while (k < count - 1 && entry_is_behind(e, a, l->next)) {
         k++;
-        l->plane += width;
+        l->plane += VOXEL;
         l->next = (l->plane - l->from) * l->inverse;
     }
-    for (aset_real before; k > 0; k--, l->plane -= width, l->next = before) {
-        before = (l->plane - width - l->from) * l->inverse;
+    for (aset_real before; k > 0; k--, l->plane -= VOXEL, l->next = before) {
+        before = (l->plane - VOXEL - l->from) * l->inverse;
         if (entry_is_behind(e, a, before)) {
             break;
         }
     }
     l->left = count - 1 - k;
-    *cell += (w->turned[a] ? l->left : k) * stride;
-    l->add = w->turned[a] ? -stride : stride;
+    l->at = w->turned[a] ? l->left : k;
+    l->add = w->turned[a] ? -1 : 1;
 }
 
-/* The same in a block of four voxels whose corner is at corner columns: of three planes, those behind are counted. */
-static inline void lane_start_in_block(lane *l, int32_t *cell, const way *w, int a, const entry *e, aset_real corner, int32_t stride) {
-    aset_real from = w->from[a], inverse = w->inverse[a];
-    aset_real first = (corner + VOXEL - from) * inverse, second = (corner + 2 * VOXEL - from) * inverse,
-              third = (corner + 3 * VOXEL - from) * inverse;
-    int32_t tie = (e->axis < 0) | (a <= e->axis);
-    int32_t k = ((first < e->t) | ((first == e->t) & tie)) + ((second < e->t) | ((second == e->t) & tie)) +
-                ((third < e->t) | ((third == e->t) & tie));
-    l->from = from;
-    l->inverse = inverse;
-    l->plane = corner + (aset_real)(k + 1) * VOXEL;
-    l->next = (l->plane - from) * inverse;
-    l->left = 3 - k;
-    *cell += (w->turned[a] ? l->left : k) * stride;
-    l->add = w->turned[a] ? -stride : stride;
+static inline void lanes_start(lanes *l, const way *w, const entry *e) {
+    lane_start(&l->x, w, 0, e);
+    lane_start(&l->y, w, 1, e);
+    lane_start(&l->z, w, 2, e);
 }
 
-/* False: out of the box. */
-static inline bool lane_cross(lane *l, int32_t *cell, aset_real *t, aset_real width) {
+/* Into the next voxel. False: out of its block. */
+static inline bool lane_cross(lane *l, aset_real *t) {
     *t = l->next;
-    l->plane += width;
+    l->plane += VOXEL;
     l->next = (l->plane - l->from) * l->inverse;
-    *cell += l->add;
-    return --l->left >= 0;
+    l->at += l->add;
+    return (l->left-- & 3) != 0;
 }
 
-/* Into the next cell, through the planes that are width apart. False: out of the box. */
-static inline bool lanes_step(lanes *l, entry *e, aset_real width) {
+static inline bool lanes_step(lanes *l, entry *e) {
     if (l->x.next <= l->y.next) {
         if (l->x.next <= l->z.next) {
             e->axis = 0;
-            return lane_cross(&l->x, &l->cell, &e->t, width);
+            return lane_cross(&l->x, &e->t);
         }
     } else if (l->y.next <= l->z.next) {
         e->axis = 1;
-        return lane_cross(&l->y, &l->cell, &e->t, width);
+        return lane_cross(&l->y, &e->t);
     }
     e->axis = 2;
-    return lane_cross(&l->z, &l->cell, &e->t, width);
+    return lane_cross(&l->z, &e->t);
 }
 
-/* The corner of block number k of n along axis a, or of the turned box's as many blocks from its end. */
-static inline aset_real block_corner(const way *w, int a, int32_t k, int32_t n) {
-    return (aset_real)(16 * (w->turned[a] ? k - n : k));
+/* Where the ray leaves the block. */
+static inline aset_real lane_block_end(const lane *l) {
+    return (l->plane + (aset_real)(l->left & 3) * VOXEL - l->from) * l->inverse;
+}
+
+/* Into the next block, at t. On the other axes a lane stays in whatever voxel of the block it was. */
+static inline void lane_cross_block(lane *l) {
+    int32_t voxels = (l->left & 3) + 1;
+    l->plane += (aset_real)voxels * VOXEL;
+    l->at += voxels * l->add;
+    l->left -= voxels;
+}
+
+static inline void lanes_leave_block(lanes *l, entry *e) {
+    aset_real x = lane_block_end(&l->x), y = lane_block_end(&l->y), z = lane_block_end(&l->z);
+    if (x <= y && x <= z) {
+        e->t = x;
+        e->axis = 0;
+        lane_cross_block(&l->x);
+    } else if (y < x && y <= z) {
+        e->t = y;
+        e->axis = 1;
+        lane_cross_block(&l->y);
+    } else {
+        e->t = z;
+        e->axis = 2;
+        lane_cross_block(&l->z);
+    }
+}
+
+static inline bool lanes_inside(const lanes *l) {
+    return (l->x.left | l->y.left | l->z.left) >= 0;
 }
 
 /* The ray's origin from a voxel's middle on an axis whose lane is in the voxel: planes are whole numbers, so it is exact. */
@@ -222,10 +234,10 @@ static inline aset_real from_middle(const way *w, int a, const lane *l) {
     return w->turned[a] ? -q : q;
 }
 
-static bool visit_voxel(way *w, const lanes *l, uint32_t block, uint64_t marks, const entry *e) {
+static bool visit_voxel(way *w, const lanes *l, uint32_t block, uint64_t marks, unsigned bit, const entry *e) {
     uint32_t first, end;
     w->counts.nonempty++;
-    draft_find_facets(w->draft, block, bits_count(marks & ((UINT64_C(1) << l->cell) - 1)), &first, &end);
+    draft_find_facets(w->draft, block, bits_count(marks & ((UINT64_C(1) << bit) - 1)), &first, &end);
     if (w->mode == DRAFT_PLANE) {
         const aset_real q[3] = {from_middle(w, 0, &l->x), from_middle(w, 1, &l->y), from_middle(w, 2, &l->z)};
         return visit_planes(w, q, first, end);
@@ -233,26 +245,19 @@ static bool visit_voxel(way *w, const lanes *l, uint32_t block, uint64_t marks, 
     return visit_side(w, e->t, e->axis, first, end);
 }
 
-/* outer: the walk of blocks, whose place gives this one's corner. */
-static bool walk_block(way *w, uint32_t block, entry e, const lanes *outer) {
+/* The voxels of one block that is not empty. True: nothing behind matters any more. */
+static inline bool walk_block(way *w, lanes *l, entry *e, uint32_t block) {
     uint64_t marks = draft_marks(w->draft, block);
-    const aset_real corner[3] = {outer->x.plane - BLOCK, outer->y.plane - BLOCK, outer->z.plane - BLOCK};
-    uint64_t cells = 0;
-    bool done = false;
-    lanes l;
-    l.cell = 0;
-    lane_start_in_block(&l.x, &l.cell, w, 0, &e, corner[0], 1);
-    lane_start_in_block(&l.y, &l.cell, w, 1, &e, corner[1], 4);
-    lane_start_in_block(&l.z, &l.cell, w, 2, &e, corner[2], 16);
+    bool inside;
     do {
-        cells++;
-        if ((marks >> l.cell & 1u) != 0 && visit_voxel(w, &l, block, marks, &e)) {
-            done = true;
-            break;
+        unsigned bit = ((unsigned)l->x.at & 3u) | ((unsigned)l->y.at & 3u) << 2 | ((unsigned)l->z.at & 3u) << 4;
+        w->counts.cells++;
+        if ((marks >> bit & 1u) != 0 && visit_voxel(w, l, block, marks, bit, e)) {
+            return true;
         }
-    } while (lanes_step(&l, &e, VOXEL) && e.t < w->t_last);
-    w->counts.cells += cells;
-    return done;
+        inside = lanes_step(l, e);
+    } while (inside && e->t < w->t_last);
+    return false;
 }
 
 /* Where the ray begins in the box; false if nowhere. */
@@ -303,30 +308,33 @@ static bool clip_near(way *w, entry *e) {
 
 static bool go(way *w) {
     const aset_draft *draft = w->draft;
-    const int32_t nx = (int32_t)draft->blocks[0], ny = (int32_t)draft->blocks[1], nz = (int32_t)draft->blocks[2];
+    const uint32_t nx = draft->blocks[0], ny = draft->blocks[1];
     const uint32_t *map = draft->map;
-    uint64_t empty = 0;
-    bool done = false;
+    bool exact = true; /* the lanes are where the ray is, not only in its block */
     entry e;
     lanes l;
     if (draft->n_facets == 0 || !clip_near(w, &e)) {
         return false;
     }
-    l.cell = 0;
-    lane_start(&l.x, &l.cell, w, 0, &e, block_corner(w, 0, 0, nx), BLOCK, nx, 1);
-    lane_start(&l.y, &l.cell, w, 1, &e, block_corner(w, 1, 0, ny), BLOCK, ny, nx);
-    lane_start(&l.z, &l.cell, w, 2, &e, block_corner(w, 2, 0, nz), BLOCK, nz, nx * ny);
+    lanes_start(&l, w, &e);
     do {
-        uint32_t i = (uint32_t)l.cell, word = map[i >> 5], bit = UINT32_C(1) << (i & 31u);
+        uint32_t i = ((uint32_t)l.z.at / 4 * ny + (uint32_t)l.y.at / 4) * nx + (uint32_t)l.x.at / 4;
+        uint32_t word = map[i >> 5], bit = UINT32_C(1) << (i & 31u);
         if ((word & bit) == 0) {
-            empty++;
-        } else if (walk_block(w, draft->rank[i >> 5] + bits_count(word & (bit - 1)), e, &l)) {
-            done = true;
-            break;
+            w->counts.cells++;
+            lanes_leave_block(&l, &e);
+            exact = false;
+            continue;
         }
-    } while (lanes_step(&l, &e, BLOCK) && e.t < w->t_last);
-    w->counts.cells += empty;
-    return done;
+        if (!exact) {
+            lanes_start(&l, w, &e);
+            exact = true;
+        }
+        if (walk_block(w, &l, &e, draft->rank[i >> 5] + bits_count(word & (bit - 1)))) {
+            return true;
+        }
+    } while (lanes_inside(&l) && e.t < w->t_last);
+    return false;
 }
 
 static inline void way_set_axis(way *w, int a, aset_real o, aset_real d) {
