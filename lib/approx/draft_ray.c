@@ -93,7 +93,7 @@ static bool visit_planes(way *w, const aset_real q[3], uint32_t first, uint32_t 
 static bool visit_side(way *w, aset_real t, int axis, uint32_t first, uint32_t end) {
     draft_meeting m = {t, 2, 2, first, 0xffffu, false};
     aset_real best = REAL_INFINITY;
-    if (!(t > 0 && t < w->t_max) || axis < 0) { /* approximate rays ignore the cell that they start in */
+    if (!(t > 0 && t < w->t_max) || axis < 0) { /* nor is there a side where a ray starts */
         return false;
     }
     if (w->any) {
@@ -236,6 +236,9 @@ static inline aset_real from_middle(const way *w, int a, const lane *l) {
 
 static bool visit_voxel(way *w, const lanes *l, uint32_t block, uint64_t marks, unsigned bit, const entry *e) {
     uint32_t first, end;
+    if (w->any && e->axis < 0) { /* approximate rays ignore the cell that they start in (Dauenhauer and Semwal 1990) */
+        return false;
+    }
     w->counts.nonempty++;
     draft_find_facets(w->draft, block, bits_count(marks & ((UINT64_C(1) << bit) - 1)), &first, &end);
     if (w->mode == DRAFT_PLANE) {

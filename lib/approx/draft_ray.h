@@ -34,8 +34,8 @@ uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draf
                            aset_vec3 direction, aset_real t_max, draft_counts *counts);
 
 /*
- * Whether anything stops a shadow ray: facets that face the origin, and others beyond the origin's own surroundings. No marked
- * voxel lies behind t_last: there the walk ends.
+ * Whether anything stops a shadow ray: facets that face the origin, and others beyond the origin's own surroundings, but for
+ * the voxel that it starts in. No marked voxel lies behind t_last: there the walk ends.
  */
 bool aset_draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                        aset_real t_last, draft_counts *counts);
