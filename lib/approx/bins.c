@@ -9,9 +9,15 @@
 
 #if ASET_WITH_DRAFTS
 
+/* No bin is where it was. */
+static void forget_recent(aset_baker *b) {
+    memset(b->recent_keys, 0xff, sizeof b->recent_keys); /* BIN_EMPTY, which no sample asks for */
+}
+
 void aset_bins_clear(aset_baker *b) {
     memset(b->keys, 0xff, b->capacity * sizeof *b->keys); /* BIN_EMPTY */
     b->n_bins = 0;
+    forget_recent(b);
 }
 
 /* The block that a key's voxel is in. */
@@ -88,6 +94,7 @@ static bool lower_ceiling(aset_baker *b) {
         }
     }
     settle_bins(b, empty);
+    forget_recent(b);
     b->n_bins = kept;
     memset(b->marks + low, 0, (baker_blocks(b) - low) * sizeof *b->marks);
     return true;

@@ -18,41 +18,42 @@ static inline void to_columns(const aset_baker *b, const aset_real *point, aset_
     }
 }
 
-
 /* A polygon's plane over the columns (u, v) of the side that it faces. */
 typedef struct sheet {
     int a, u, v;
     const aset_real *normal, *corner; /* its normal, a point of it */
     aset_real at_u, at_v, at_a, slope_u, slope_v; /* the same point, its slopes */
     int64_t unit_u, unit_v;                       /* the slopes in units */
-    uint32_t key_side;
-    bin *last; /* of the sample before */
-    uint32_t last_key, last_ceiling;
+    uint32_t side;
     bool seen; /* a middle was met, and what follows from normal and corner is there */
 } sheet;
 
+/* The bin of a voxel's side, NULL if it is not of this pass's blocks; kept as the side's last one, which the next sample mostly wants. */
+static bin *find_bin(aset_baker *b, const sheet *s, uint32_t key, uint32_t u, uint32_t v, uint32_t a) {
+    uint32_t at[3];
+    at[s->u] = u;
+    at[s->v] = v;
+    at[s->a] = a;
+    uint32_t block = baker_block_at(b, at[0], at[1], at[2]);
+    bin *it = block >= b->floor_block && block < b->ceiling_block ? aset_bins_find(b, key) : NULL;
+    b->recent_keys[s->side] = key; /* finding may have moved all bins, which empties these */
+    b->recent[s->side] = it;
+    return it;
+}
+
 /* One column's middle. */
-static void add_sample(aset_baker *b, sheet *s, int32_t i, int32_t j) {
+static void add_sample(aset_baker *b, const sheet *s, int32_t i, int32_t j) {
+    const uint32_t strides[3] = {6, 6 * b->n[0], 6 * b->n[0] * b->n[1]};
     aset_real du = (aset_real)i + R(0.5) - s->at_u, dv = (aset_real)j + R(0.5) - s->at_v;
     aset_real height = s->at_a + s->slope_u * du + s->slope_v * dv, top = (aset_real)b->n[s->a] * 4;
-    uint32_t at[3];
     height = height > 0 ? (height < top ? height : top) : 0;
-    uint32_t k = (uint32_t)height / 4;
-    at[s->u] = (uint32_t)i / 4;
-    at[s->v] = (uint32_t)j / 4;
-    at[s->a] = k < b->n[s->a] ? k : b->n[s->a] - 1;
-    uint32_t key = ((at[2] * b->n[1] + at[1]) * b->n[0] + at[0]) * 6 + s->key_side;
-    if (key != s->last_key || s->last_ceiling != b->ceiling_block) { /* bins move with the ceiling */
-        uint32_t block = baker_block_at(b, at[0], at[1], at[2]);
-        bool is_ours = block >= b->floor_block && block < b->ceiling_block;
-        s->last = is_ours ? aset_bins_find(b, key) : NULL;
-        s->last_key = key;
-        s->last_ceiling = b->ceiling_block;
-    }
-    if (s->last == NULL) {
+    uint32_t k = (uint32_t)(int32_t)height / 4;
+    k -= k == b->n[s->a];
+    uint32_t key = (uint32_t)i / 4 * strides[s->u] + (uint32_t)j / 4 * strides[s->v] + k * strides[s->a] + s->side;
+    bin *it = key == b->recent_keys[s->side] ? b->recent[s->side] : find_bin(b, s, key, (uint32_t)i / 4, (uint32_t)j / 4, k);
+    if (it == NULL) {
         return;
     }
-    bin *it = s->last;
     if (it->n == SAMPLES_MAX) {
         b->failure = ASET_ERR_LIMIT;
         return;
@@ -61,7 +62,7 @@ static void add_sample(aset_baker *b, sheet *s, int32_t i, int32_t j) {
     it->n++;
     it->columns_u += (uint32_t)i & 3u;
     it->columns_v += (uint32_t)j & 3u;
-    it->height += (int64_t)((height - (aset_real)at[s->a] * 4) * BIN_UNIT);
+    it->height += (int64_t)((height - (aset_real)(int32_t)k * 4) * BIN_UNIT);
     it->slope_u += s->unit_u;
     it->slope_v += s->unit_v;
     if (!b->single) {
@@ -72,8 +73,8 @@ static void add_sample(aset_baker *b, sheet *s, int32_t i, int32_t j) {
 }
 
 static int64_t to_units(aset_real slope) {
-    slope = slope > -1 ? (slope < 1 ? slope : 1) : -1; /* or no number, if the source gives others than it measured */
-    return (int64_t)(slope * BIN_UNIT + (slope < 0 ? R(-0.5) : R(0.5)));
+    slope = real_min(real_max(slope, -1), 1); /* no number, if the source gives others than it measured, becomes -1 */
+    return (int64_t)(slope * BIN_UNIT + (R(0.5) - (aset_real)(slope < 0)));
 }
 
 /* The first column whose middle is not below x, or how many there are; x of any size. */
@@ -83,13 +84,17 @@ static inline int32_t first_column(aset_real x, uint32_t n) {
     return below + ((aset_real)below < k);
 }
 
-/* u where the edge from p to q crosses the row's middle, computed the same way from both sides of the edge. */
+/* u where the edge from low to high, which the row's middle lies between, crosses it. */
+static inline aset_real crossing(const aset_real *low, const aset_real *high, int u, int v, aset_real middle) {
+    return low[u] + (middle - low[v]) / (high[v] - low[v]) * (high[u] - low[u]);
+}
+
+/* Whether the edge from p to q crosses the row's middle, and where: computed the same way from both sides of the edge. */
 static inline bool crosses(const aset_real *p, const aset_real *q, int u, int v, aset_real middle, aset_real *at) {
     if ((p[v] <= middle) == (q[v] <= middle)) {
         return false;
     }
-    const aset_real *low = p[v] < q[v] ? p : q, *high = p[v] < q[v] ? q : p;
-    *at = low[u] + (middle - low[v]) / (high[v] - low[v]) * (high[u] - low[u]);
+    *at = p[v] < q[v] ? crossing(p, q, u, v, middle) : crossing(q, p, u, v, middle);
     return true;
 }
 
@@ -167,8 +172,8 @@ static void sample_sheet(aset_baker *b, const aset_real *points, uint32_t n, ase
     aset_real normal[3];
     normal_of(points, n, normal);
     sheet s;
-    s.a = real_abs(normal[0]) >= real_abs(normal[1]) ? (real_abs(normal[0]) >= real_abs(normal[2]) ? 0 : 2)
-                                                     : (real_abs(normal[1]) >= real_abs(normal[2]) ? 1 : 2);
+    aset_real x = real_abs(normal[0]), y = real_abs(normal[1]), z = real_abs(normal[2]);
+    s.a = z > real_max(x, y) ? 2 : y > x;
     s.u = s.a < 2 ? s.a + 1 : 0;
     s.v = s.u < 2 ? s.u + 1 : 0;
     if (normal[s.a] == 0 || from[s.u] == to[s.u] || from[s.v] == to[s.v]) {
@@ -176,10 +181,7 @@ static void sample_sheet(aset_baker *b, const aset_real *points, uint32_t n, ase
     }
     s.normal = normal;
     s.corner = points;
-    s.key_side = (uint32_t)s.a * 2 + (normal[s.a] < 0);
-    s.last = NULL;
-    s.last_key = BIN_EMPTY;
-    s.last_ceiling = 0;
+    s.side = (uint32_t)s.a * 2 + (normal[s.a] < 0);
     s.seen = false;
     for (int32_t row = from[s.v]; row < to[s.v] && b->failure == ASET_OK; row++) {
         if (n == 3) {
