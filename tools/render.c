@@ -317,11 +317,15 @@ static bool parse_request(request *r, int argc, char **argv) {
     return (!tool_has_extension(r->scene, ".draft") || set_baked(r)) && check_request(r);
 }
 
+/* Rows that a thread draws at a time of a draft, whose beams go through eight rows' voxels. */
+#define DRAFT_ROWS 8u
+
 /* What the threads share; the lock guards next, written and failed. */
 typedef struct crew {
     const prepared *p;
     tool_picture *file; /* NULL: thrown away */
     uint32_t first, end, columns, channels, next, written;
+    uint32_t at_once; /* rows that a thread takes */
     bool failed;
     pthread_mutex_t lock;
     pthread_cond_t turn;
@@ -331,16 +335,16 @@ typedef struct worker {
     crew *crew;
     aset_scratch *scratch;
     aset_statistics statistics;
-    uint8_t *row;
+    uint8_t *rows;
 } worker;
 
 /*
- * A row whose colours are mixed with the background, by coverage, into one whose colours are the objects' own, as PNG has
+ * Rows whose colours are mixed with the background, by coverage, into some whose colours are the objects' own, as PNG has
  * it: else a light rim would show around the object on any other background.
  */
-static void unmix(uint8_t *row, uint32_t columns, const aset_colour *background) {
+static void unmix(uint8_t *row, uint32_t pixels, const aset_colour *background) {
     const aset_real back[3] = {background->r, background->g, background->b};
-    for (uint32_t i = 0; i < columns; i++, row += 4) {
+    for (uint32_t i = 0; i < pixels; i++, row += 4) {
         float alpha = (float)row[3] / 255;
         for (int k = 0; k < 3; k++) {
             float behind = back[k] < 1 ? (float)back[k] * 255 : 255;
@@ -358,15 +362,17 @@ static void draw_rows(worker *w) {
     picture.height = c->p->view.height_px;
     picture.format = c->channels == 4 ? ASET_RGBA8888 : ASET_RGB888;
     picture.transparent = c->channels == 4;
-    picture.pixels = w->row;
+    picture.pixels = w->rows;
+    picture.stride = (size_t)c->columns * c->channels;
     (void)pthread_mutex_lock(&c->lock);
     while (!c->failed && c->next < c->end) {
-        uint32_t row = c->next++;
+        uint32_t row = c->next, whole = c->at_once - row % c->at_once, n = whole < c->end - row ? whole : c->end - row;
+        c->next += n;
         (void)pthread_mutex_unlock(&c->lock);
         aset_status status =
-            aset_render_rows(&c->p->tracer, &c->p->view, &picture, row, 1, w->scratch, &w->statistics);
+            aset_render_rows(&c->p->tracer, &c->p->view, &picture, row, n, w->scratch, &w->statistics);
         if (c->channels == 4) {
-            unmix(w->row, c->columns, &c->p->tracer.scene->background);
+            unmix(w->rows, n * c->columns, &c->p->tracer.scene->background);
         }
         (void)pthread_mutex_lock(&c->lock);
         while (!c->failed && c->written != row) {
@@ -376,11 +382,13 @@ static void draw_rows(worker *w) {
             tool_error(c->p->path, 0, "%s", aset_status_text(status));
             c->failed = true;
         }
-        if (!c->failed && c->file != NULL && !tool_picture_row(c->file, w->row)) {
-            c->failed = true;
+        for (uint32_t i = 0; i < n && !c->failed; i++) {
+            if (c->file != NULL && !tool_picture_row(c->file, w->rows + i * picture.stride)) {
+                c->failed = true;
+            }
+            c->written++;
+            tool_progress_step(c->written - c->first);
         }
-        c->written++;
-        tool_progress_step(c->written - c->first);
         (void)pthread_cond_broadcast(&c->turn);
     }
     (void)pthread_mutex_unlock(&c->lock);
@@ -395,17 +403,18 @@ static void *work(void *context) {
 static bool draw(crew *c, uint32_t n_threads, aset_statistics *statistics) {
     worker *workers = calloc(n_threads, sizeof *workers);
     pthread_t *threads = calloc(n_threads, sizeof *threads);
-    uint8_t *rows = malloc((size_t)n_threads * c->columns * c->channels);
+    size_t row_bytes = (size_t)c->columns * c->channels;
+    uint8_t *rows = malloc(n_threads * c->at_once * row_bytes);
     uint32_t n_started = 1;
     bool ready = workers != NULL && threads != NULL && rows != NULL;
     if (!ready) {
-        tool_error(c->p->path, 0, "no memory for %" PRIu32 " rows of the picture", n_threads);
+        tool_error(c->p->path, 0, "no memory for %" PRIu32 " rows of the picture", n_threads * c->at_once);
         c->failed = true;
     }
     for (uint32_t i = 0; ready && i < n_threads; i++) {
         workers[i].crew = c;
         workers[i].scratch = &c->p->scratches[i];
-        workers[i].row = rows + (size_t)i * c->columns * c->channels;
+        workers[i].rows = rows + i * c->at_once * row_bytes;
     }
     while (ready && n_started < n_threads && pthread_create(&threads[n_started], NULL, work, &workers[n_started]) == 0) {
         n_started++; /* fewer threads than asked for draw the same picture */
@@ -432,6 +441,7 @@ static bool draw_picture(const request *r, const prepared *p, aset_statistics *s
     c.p = p;
     c.columns = p->view.width_px + extra;
     c.channels = r->settings.transparent ? 4 : 3;
+    c.at_once = p->tracer.draft != NULL ? DRAFT_ROWS : 1;
     c.first = c.next = c.written = r->has_rows ? r->first_row : 0;
     c.end = r->has_rows ? r->end_row : rows;
     if (c.end > rows) {

@@ -3,9 +3,9 @@
  *
  *     band of 8 rows    +-+---+------+--      its voxels, nearest first, each with its columns and rows
  *                       | |   |      |
- *     row                                     those of the band that it meets
- *     segment           |======|              of 64 columns: those of the row that it meets
- *     beam                |==|                of 8 columns: those of the segment that it meets
+ *     two rows                                those of the band that they meet
+ *     segment           |======|              of 32 columns: those of the rows' that it meets
+ *     beam                |==|                of 4 columns: those of the segment's that it meets
  *
  * The order is one in which every ray from the eye passes what it meets: away from the eye's own voxel on each axis, blocks
  * before voxels. A band that shows more voxels than there is room for is left to single rays.
@@ -230,8 +230,8 @@ static void make_band(aset_beams *beams, const drawing *d, uint32_t band) {
     beams->overflow = !fill_band(&m);
 }
 
-/* The band's voxels that a row meets. False: there were too many for the band. */
-static bool begin_row(aset_beams *beams, const drawing *d, uint32_t row, uint32_t n_rows) {
+/* The band's voxels that one or two rows of it meet. False: there were too many for the band. */
+static bool begin_rows(aset_beams *beams, const drawing *d, uint32_t row, uint32_t n_rows) {
     if (beams->band != row / BEAM_ROWS) {
         make_band(beams, d, row / BEAM_ROWS);
     }
@@ -246,7 +246,7 @@ static bool begin_row(aset_beams *beams, const drawing *d, uint32_t row, uint32_
     return !beams->overflow;
 }
 
-/* Chooses the voxels before the pixels from column on, a multiple of BEAM_RAYS. False: there are none. */
+/* Chooses the voxels before the pixels from column on, a multiple of width. False: there are none. */
 static bool choose(aset_beams *beams, uint32_t column, uint32_t width) {
     if (beams->segment != column / SEGMENT) {
         uint32_t from = column / SEGMENT * SEGMENT, to = from + SEGMENT - 1, n = 0;
@@ -308,7 +308,7 @@ static void draw_background(const drawing *d, uint32_t n, unsigned char *at) {
     d->statistics->primary += (uint64_t)n * d->samples * d->samples;
 }
 
-/* The pixels whose rays go in one beam: width columns of rows rows. */
+/* The pixels whose rays go in one beam: of one row or two, width of each. */
 static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column, uint32_t row, uint32_t width, uint32_t rows,
                       unsigned char *at, size_t stride) {
     beam_rays rays;
@@ -336,12 +336,16 @@ static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column
     }
 }
 
-static bool draw_row(aset_beams *beams, const drawing *d, uint32_t row, uint32_t rows, unsigned char *line, size_t stride) {
+/*
+ * Beams are four pixels wide and two high where two rows are wanted that lie apart in memory, which fits voxels' outlines best; else
+ * eight pixels of one row.
+ */
+static uint32_t draw_rows(aset_beams *beams, const drawing *d, uint32_t row, uint32_t n_rows, unsigned char *line, size_t stride) {
     size_t bytes = aset_format_bytes(d->picture->format);
     bool alone = d->tracer->draft->stage.counts.objects == 0; /* nothing is met but voxels */
-    uint32_t most = BEAM_RAYS / rows;
-    if (!begin_row(beams, d, row, rows)) {
-        return false;
+    uint32_t rows = n_rows > 1 && row % 2 == 0 && stride >= d->columns * bytes ? 2 : 1, most = BEAM_RAYS / rows;
+    if (!begin_rows(beams, d, row, rows)) {
+        return 0;
     }
     for (uint32_t column = 0; column < d->columns; column += most) {
         uint32_t width = d->columns - column < most ? d->columns - column : most;
@@ -353,10 +357,10 @@ static bool draw_row(aset_beams *beams, const drawing *d, uint32_t row, uint32_t
             }
         }
     }
-    return true;
+    return rows;
 }
 
-static const struct aset_beam_calls calls = {begin, draw_row};
+static const struct aset_beam_calls calls = {begin, draw_rows};
 
 aset_status aset_beams_init(aset_beams *beams, uint32_t voxels, aset_arena *arena) {
     if (beams == NULL || arena == NULL || voxels < 1 || voxels > ASET_BEAMS_MAX) {

@@ -37,8 +37,11 @@ void aset_drawing_put(const drawing *d, const gathered *g, unsigned char *at);
 struct aset_beam_calls {
     /* Whether they can draw this picture at all; before its first row. */
     bool (*begin)(aset_beams *beams, const drawing *d);
-    /* False: nothing was drawn, the row's rays must be traced one by one. */
-    bool (*draw_row)(aset_beams *beams, const drawing *d, uint32_t row, uint32_t rows, unsigned char *line, size_t stride);
+    /*
+     * Draws one or two of the n_rows rows that are wanted from row on, stride bytes apart; how many. 0: nothing was drawn, the
+     * row's rays must be traced one by one.
+     */
+    uint32_t (*draw_rows)(aset_beams *beams, const drawing *d, uint32_t row, uint32_t n_rows, unsigned char *line, size_t stride);
 };
 #endif
 

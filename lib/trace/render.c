@@ -87,17 +87,19 @@ static void draw_pixel(const drawing *d, uint32_t column, uint32_t row, unsigned
     aset_drawing_put(d, &g, at);
 }
 
-static void draw_row(const drawing *d, aset_beams *beams, uint32_t row, unsigned char *line) {
+/* Draws some of the n_rows rows that are wanted from row on; how many. */
+static uint32_t draw_rows(const drawing *d, aset_beams *beams, uint32_t row, uint32_t n_rows, unsigned char *line) {
 #if ASET_WITH_DRAFTS
-    if (beams != NULL && d->picture->stride && d->rows%2==0) { if (row%2==1) return; if( beams->calls->draw_row(beams, d, row, 2, line, d->picture->stride)) return; }
-    if (beams != NULL && beams->calls->draw_row(beams, d, row, 1, line, d->picture->stride)) {
-        return;
+    uint32_t n = beams != NULL ? beams->calls->draw_rows(beams, d, row, n_rows, line, d->picture->stride) : 0;
+    if (n > 0) {
+        return n;
     }
 #endif
-    (void)beams;
+    (void)beams, (void)n_rows;
     for (uint32_t column = 0; column < d->columns; column++) {
         draw_pixel(d, column, row, line + column * aset_format_bytes(d->picture->format));
     }
+    return 1;
 }
 
 /* The scratch's beams, if they can draw the picture: all its eye rays ask a draft, by its planes. */
@@ -146,11 +148,12 @@ aset_status aset_render_rows(const aset_tracer *tracer, const aset_view *view, c
         return ASET_ERR_ARGUMENT;
     }
     aset_beams *beams = beams_for(&d);
-    for (uint32_t row = 0; row < n_rows; row++) {
-        unsigned char *line = (unsigned char *)picture->pixels + row * picture->stride;
-        draw_row(&d, beams, first_row + row, line);
-        if (picture->on_row != NULL && picture->on_row(picture->context, first_row + row, line) != 0) {
-            return ASET_ERR_STOPPED;
+    unsigned char *line = picture->pixels;
+    for (uint32_t row = first_row, end = first_row + n_rows; row < end;) {
+        for (uint32_t n = draw_rows(&d, beams, row, end - row, line); n > 0; n--, row++, line += picture->stride) {
+            if (picture->on_row != NULL && picture->on_row(picture->context, row, line) != 0) {
+                return ASET_ERR_STOPPED;
+            }
         }
     }
     return ASET_OK;
