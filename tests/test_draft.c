@@ -497,7 +497,10 @@ static void test_draft__layers_are_in_order_and_cover_once(void **state) {
     assert_true(met > 1000 && several > 50);
 }
 
-/* Where something stops a shadow ray, something is met; where most of a ray is stopped by what faces it, a shadow ray is. */
+/*
+ * Where something stops a shadow ray, something is met; where most of a ray is stopped by what faces it beyond the voxel that it starts
+ * in, a shadow ray is.
+ */
 static void test_draft__any_agrees_with_closest(void **state) {
     (void)state;
     uint32_t solid = 0, passed = 0, blocked_by_nothing = 0, sides_differ = 0;
@@ -508,6 +511,7 @@ static void test_draft__any_agrees_with_closest(void **state) {
         model_of(&m, &r, 120, i % 2 == 0);
         bake(&d, &m, 16, 16, 16, i % 3 == 0);
         aset_tracer tracer = tracer_of(&d.draft);
+        const aset_vec3 voxel = {4 * d.draft.size[0], 4 * d.draft.size[1], 4 * d.draft.size[2]};
         for (int k = 0; k < 5000; k++) {
             aset_ray ray = random_ray_from(&r, k % 2 == 0 ? 12 : 4);
             aset_hit hit;
@@ -520,7 +524,8 @@ static void test_draft__any_agrees_with_closest(void **state) {
                 sides_differ += any != closest;
             } else {
                 blocked_by_nothing += any && !closest;
-                bool faces = closest && vec_dot(hit.normal, ray.direction) < 0;
+                bool is_own = closest && hit.t * aset_vec_length(ray.direction) < R(1.25) * aset_vec_length(voxel);
+                bool faces = closest && !is_own && vec_dot(hit.normal, ray.direction) < 0;
                 solid += faces;
                 passed += faces && !any;
             }
@@ -531,6 +536,35 @@ static void test_draft__any_agrees_with_closest(void **state) {
     check(blocked_by_nothing == 0, "%" PRIu32, blocked_by_nothing);
     check(sides_differ == 0, "%" PRIu32, sides_differ);
     check(solid > 1000 && passed * 20 < solid, "%" PRIu32 " of %" PRIu32 " shadow rays passed", passed, solid);
+}
+
+/* From a voxel's middle to no farther than its sides nothing stops a shadow ray, whatever is met there. */
+static void test_draft__shadow_rays_ignore_the_voxel_that_they_start_in(void **state) {
+    (void)state;
+    random_state r = random_start(seed_of(330));
+    model m;
+    drawn d;
+    uint32_t met = 0;
+    model_of(&m, &r, 120, true);
+    bake(&d, &m, 16, 16, 16, false);
+    aset_tracer tracer = tracer_of(&d.draft);
+    const aset_real *low = d.draft.low, *column = d.draft.size;
+    for (uint32_t i = 0; i < 16 * 16 * 16; i++) {
+        aset_ray ray = random_ray_from(&r, 4);
+        aset_hit hit;
+        bool any, closest;
+        ray.origin = vec(low[0] + ((aset_real)(i % 16) * 4 + 2) * column[0], low[1] + ((aset_real)(i / 16 % 16) * 4 + 2) * column[1],
+                         low[2] + ((aset_real)(i / 256) * 4 + 2) * column[2]);
+        ray.direction = aset_vec_unit(ray.direction);
+        ray.t_max = R(1.99) * real_min(column[0], real_min(column[1], column[2]));
+        assert_int_equal(aset_any_hit(&any, &tracer, &ray, true, NULL), ASET_OK);
+        assert_int_equal(aset_closest_hit(&closest, &hit, &tracer, &ray, true, NULL), ASET_OK);
+        check(!any, "from voxel %" PRIu32, i);
+        met += closest;
+    }
+    check(met > 100, "only %" PRIu32 " rays met anything", met);
+    drawn_close(&d);
+    model_free(&m);
 }
 
 static void test_draft__odd_rays(void **state) {
@@ -892,6 +926,7 @@ int main(void) {
         cmocka_unit_test(test_draft__garbage),
         cmocka_unit_test(test_draft__layers_are_in_order_and_cover_once),
         cmocka_unit_test(test_draft__any_agrees_with_closest),
+        cmocka_unit_test(test_draft__shadow_rays_ignore_the_voxel_that_they_start_in),
         cmocka_unit_test(test_draft__odd_rays),
 #if ASET_WITH_SPHERES
         cmocka_unit_test(test_draft__rays_from_far_away),

@@ -56,7 +56,10 @@ typedef struct aset_tracer {
 aset_status aset_closest_hit(bool *found, aset_hit *hit, const aset_tracer *tracer, const aset_ray *ray,
                              bool approximate, aset_statistics *statistics);
 
-/* Whether the ray hits anything at 0 < t < t_max: cheaper than the nearest. Otherwise as aset_closest_hit. */
+/*
+ * Whether the ray hits anything at 0 < t < t_max, as shadow rays ask: cheaper than the nearest. With a draft the voxel that it starts
+ * in is ignored. Otherwise as aset_closest_hit.
+ */
 aset_status aset_any_hit(bool *found, const aset_tracer *tracer, const aset_ray *ray, bool approximate,
                          aset_statistics *statistics);
 
