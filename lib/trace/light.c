@@ -25,7 +25,7 @@ bool aset_light_towards(light_ray *towards, const aset_scene *scene, const aset_
     if (light->has_colour) {
         towards->colour = light->colour;
     } else {
-        aset_real one = scene->n_uncoloured == 1 ? 1 : 1 / real_sqrt((aset_real)scene->n_uncoloured);
+        aset_real one = 1 / real_sqrt((aset_real)scene->n_uncoloured);
         towards->colour.r = towards->colour.g = towards->colour.b = one;
     }
     return true;
