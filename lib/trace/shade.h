@@ -12,7 +12,7 @@ typedef struct shading {
     aset_vec3 facing;    /* geometric normal, on the side that the ray came from */
     bool entering;       /* the ray came to the surface's front */
     aset_real nudge;     /* how far new rays start from the surface, */
-    aset_real clearance; /* and how far at least those that a draft will answer */
+    aset_real clearance; /* and how far at least those that a draft will answer; 0 without one */
     aset_material own;   /* the material of a draft's facet */
 } shading;
 
@@ -24,11 +24,8 @@ bool aset_policy_approximate(const aset_tracer *tracer, aset_kind kind, uint32_t
 /* 0.1 fill + what the lights add; sends the shadow rays. depth: of the ray that hit. */
 aset_colour aset_shade_local(const aset_tracer *tracer, const shading *s, uint32_t depth, aset_statistics *statistics);
 
-/* Where a ray that leaves the surface along direction starts: off the surface, on the side it goes to. */
-aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction);
-
-/* The same for a ray that the approximation answers, if approximate. */
-aset_vec3 aset_shade_start_for(const shading *s, aset_vec3 direction, bool approximate);
+/* Where a ray that leaves the surface along direction starts: off the surface by clearance at least, on the side it goes to. */
+aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction, aset_real clearance);
 
 aset_vec3 aset_shade_reflected(const shading *s);
 

@@ -37,7 +37,7 @@ aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena 
 static void leave(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer, const shading *s, aset_vec3 direction,
                   aset_real weight, uint32_t depth, aset_kind kind) {
     aset_waiting *w = scratch->stack + (*n)++;
-    w->origin = aset_shade_start_for(s, direction, aset_policy_approximate(tracer, kind, depth));
+    w->origin = aset_shade_start(s, direction, aset_policy_approximate(tracer, kind, depth) ? s->clearance : 0);
     w->direction = direction;
     w->weight = weight;
     w->depth = (uint16_t)depth;
