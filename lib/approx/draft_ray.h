@@ -40,7 +40,7 @@ uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draf
 bool aset_draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                        aset_real t_last, draft_counts *counts);
 
-/* How far from the surface, along its normal, rays start that are to meet the draft. */
+/* How far from the surface, along its normal, rays start that are to meet the draft; shadow rays a third of that (trace/shade.c). */
 aset_real aset_draft_clearance(const aset_draft *draft);
 
 #endif
