@@ -2,9 +2,9 @@
  * beams.h - eye rays that go through a draft eight at a time.
  *
  * A draft's marked voxels are projected onto the picture, a band of rows after the other, nearest first; the eye rays of eight
- * neighbouring pixels, of two rows where the picture's stride is not 0, then meet each voxel before them together, and pixels without any are background at once. It is the
- * beam of Heckbert and Hanrahan 1984 with the voxels' order instead of clipping. The picture is the same, bit for bit, and so are all
- * counts but those of empty cells, of which no beam visits any.
+ * neighbouring pixels, of two rows where the picture's stride is not 0, then meet each voxel before them together, and pixels
+ * without any are background at once. It is the beam of Heckbert and Hanrahan 1984 with the voxels' order instead of clipping. The
+ * picture is the same, bit for bit, and so are all counts but those of empty cells, of which no beam visits any.
  */
 #ifndef ASET_BEAMS_H
 #define ASET_BEAMS_H
