@@ -4,6 +4,7 @@
  */
 #include "aset/report.h"
 
+#include <float.h>
 #include <string.h>
 
 /* A text that grows in the caller's buffer and goes on counting when that is full. */
@@ -12,51 +13,56 @@ typedef struct text {
     size_t size, n;
 } text;
 
+static void put_char(text *t, char c) {
+    if (t->n + 1 < t->size) {
+        t->at[t->n] = c;
+    }
+    t->n++;
+}
+
 static void put(text *t, const char *s) {
     for (; *s != 0; s++) {
-        if (t->n + 1 < t->size) {
-            t->at[t->n] = *s;
-        }
-        t->n++;
+        put_char(t, *s);
     }
 }
 
-static void put_number(text *t, uint64_t x) {
+/* With so many digits at least. */
+static void put_number(text *t, uint64_t x, unsigned least) {
     char digits[21];
-    int i = 20;
+    unsigned i = 20;
     digits[i] = 0;
     do {
         digits[--i] = (char)('0' + x % 10);
         x /= 10;
-    } while (x > 0);
+    } while (x > 0 || i > 20 - least);
     put(t, digits + i);
 }
 
-/* A number from 0 to 10^12 with so many decimals, at most 6. */
-static void put_decimal(text *t, double x, unsigned decimals) {
-    uint64_t scale = 1;
+/* A number of so many decimals, at most 6, given in units of the last one. */
+static void put_decimal(text *t, uint64_t units, unsigned decimals) {
+    uint32_t scale = 1;
     for (unsigned i = 0; i < decimals; i++) {
         scale *= 10;
     }
-    uint64_t units = x > 0 && x < 1e12 ? (uint64_t)(x * (double)scale + 0.5) : 0;
-    put_number(t, units / scale);
-    put(t, ".");
-    for (uint64_t digit = scale / 10; digit > 0; digit /= 10) {
-        put_number(t, units / digit % 10);
+    put_number(t, units / scale, 1);
+    put_char(t, '.');
+    put_number(t, units % scale, decimals);
+}
+
+/*
+ * The pattern with its numbers in their places: # is the next one, @3 the next one with three decimals, as put_decimal takes
+ * it. ' stands for ", for the sake of JSON.
+ */
+static void fill(text *t, const char *pattern, const uint64_t *numbers) {
+    for (; *pattern != 0; pattern++) {
+        if (*pattern == '#') {
+            put_number(t, *numbers++, 1);
+        } else if (*pattern == '@') {
+            put_decimal(t, *numbers++, (unsigned)(*++pattern - '0'));
+        } else {
+            put_char(t, *pattern == '\'' ? '"' : *pattern);
+        }
     }
-}
-
-static void put_field(text *t, const char *key, uint64_t x) {
-    put(t, "\"");
-    put(t, key);
-    put(t, "\":");
-    put_number(t, x);
-}
-
-/* One more member of an object: a comma before all but the first. */
-static void put_member(text *t, const char *key, uint64_t x) {
-    put(t, ",");
-    put_field(t, key, x);
 }
 
 static size_t text_end(text *t) {
@@ -66,8 +72,49 @@ static size_t text_end(text *t) {
     return t->n;
 }
 
-static double ratio(uint64_t a, uint64_t b) {
-    return b > 0 ? (double)a / (double)b : 0;
+/* a / b in units of 10^-decimals, to the nearest; 0 for b = 0. */
+static uint64_t ratio(uint64_t a, uint64_t b, unsigned decimals) {
+    if (b == 0) {
+        return 0;
+    }
+    for (; b > UINT64_MAX / 10; b /= 2) {
+        a /= 2;
+    }
+    uint64_t units = a / b, rest = a % b;
+    for (; decimals > 0; decimals--) {
+        units = units * 10 + rest * 10 / b;
+        rest = rest * 10 % b;
+    }
+    return units + (rest >= b - rest);
+}
+
+/*
+ * A time in units of 10^-decimals s; 0 for what is not finite, below 0 or over 10^12. From the number's bits, since nothing else
+ * in the core computes in double: where the processor does not either, that would be 3 kB.
+ */
+static uint64_t time_units(double seconds, unsigned decimals) {
+    const double most = 1e12;
+#if DBL_MANT_DIG == 53
+    uint64_t bits, most_bits; /* numbers that are not negative are in the order of their bits; the others lie above */
+    memcpy(&bits, &seconds, sizeof bits);
+    memcpy(&most_bits, &most, sizeof most_bits);
+    if (bits >= most_bits) {
+        return 0;
+    }
+    uint64_t mantissa = (bits & ((UINT64_C(1) << 52) - 1)) | UINT64_C(1) << 52;
+    unsigned shift = 1075 - (unsigned)(bits >> 52); /* mantissa / 2^shift */
+    if (shift > 60) {
+        mantissa = shift < 124 ? mantissa >> (shift - 60) : 0;
+        shift = 60;
+    }
+    return ratio(mantissa, UINT64_C(1) << shift, decimals);
+#else
+    double units = seconds;
+    for (; decimals > 0; decimals--) {
+        units *= 10;
+    }
+    return seconds > 0 && seconds < most ? (uint64_t)(units + 0.5) : 0;
+#endif
 }
 
 static void put_kinds(text *t, uint32_t kinds, const char *quote, const char *none) {
@@ -84,6 +131,8 @@ static void put_kinds(text *t, uint32_t kinds, const char *quote, const char *no
     }
     put(t, first ? none : "");
 }
+
+/* --- what there is to report, from wherever it stands --- */
 
 static uint32_t kinds_of(const aset_tracer *tracer) {
 #if ASET_WITH_APPROXIMATION
@@ -121,221 +170,166 @@ static aset_structure structure_of(const aset_tracer *tracer, uint32_t divisions
     return s;
 }
 
-static void json_scene(text *t, const aset_report *r) {
-    aset_counts counts = counts_of(r), *c = &counts;
-    put(t, "{\"scene\":{");
-    put_field(t, "objects", c->objects);
-    put_member(t, "polygons", c->polygons);
-    put_member(t, "patches", c->patches);
-    put_member(t, "spheres", c->spheres);
-    put_member(t, "cones", c->cones);
-    put_member(t, "materials", c->materials);
-    put_member(t, "lights", c->lights);
-    put(t, "},\"method\":\"");
-    put(t, r->method != NULL ? r->method : "");
-    put(t, "\",\"approx\":[");
-    put_kinds(t, kinds_of(r->tracer), "\"", "");
-    put(t, "]");
+static uint32_t depth_of(const aset_tracer *tracer) {
 #if ASET_WITH_APPROXIMATION
-    put_member(t, "approx_depth", r->tracer->approx_depth);
+    return tracer->approx_depth;
 #else
-    put_member(t, "approx_depth", 0);
+    (void)tracer;
+    return 0;
 #endif
-    put(t, ",\"cells\":\"");
-    put(t, r->cells != NULL ? r->cells : "");
-    put(t, "\"");
+}
+
+static const char *word_of(const char *word) {
+    return word != NULL ? word : "";
+}
+
+/* --- JSON --- */
+
+static void json_scene(text *t, const aset_report *r) {
+    const aset_counts c = counts_of(r);
+    const uint64_t numbers[] = {c.objects, c.polygons, c.patches, c.spheres, c.cones, c.materials, c.lights};
+    const uint64_t depth = depth_of(r->tracer);
+    fill(t, "{'scene':{'objects':#,'polygons':#,'patches':#,'spheres':#,'cones':#,'materials':#,'lights':#},'method':'", numbers);
+    put(t, word_of(r->method));
+    fill(t, "','approx':[", NULL);
+    put_kinds(t, kinds_of(r->tracer), "\"", "");
+    fill(t, "],'approx_depth':#,'cells':'", &depth);
+    put(t, word_of(r->cells));
 }
 
 static void json_structure(text *t, const aset_tracer *tracer) {
-    uint32_t divisions[3];
-    aset_structure structure = structure_of(tracer, divisions), *s = &structure;
-    put(t, ",\"grid\":[");
-    for (int a = 0; a < 3; a++) {
-        put(t, a > 0 ? "," : "");
-        put_number(t, divisions[a]);
-    }
-    put(t, "],\"structure\":{");
-    put_field(t, "interior", s->interior);
-    put_member(t, "leaves", s->leaves);
-    put_member(t, "empty", s->leaves - s->nonempty);
-    put_member(t, "nonempty", s->nonempty);
-    put_member(t, "references", s->references);
-    put_member(t, "merged", s->merged);
-    put(t, ",\"density\":");
-    put_decimal(t, ratio(s->references, s->nonempty), 6);
-    put(t, "}");
+    uint32_t n[3];
+    const aset_structure s = structure_of(tracer, n);
+    const uint64_t numbers[] = {n[0], n[1], n[2], s.interior, s.leaves, s.leaves - s.nonempty, s.nonempty, s.references, s.merged,
+                                ratio(s.references, s.nonempty, 6)};
+    fill(t, "','grid':[#,#,#],'structure':{'interior':#,'leaves':#,'empty':#,'nonempty':#,'references':#,'merged':#,'density':@6}",
+         numbers);
 }
 
-static void json_statistics(text *t, const aset_statistics *given) {
-    aset_statistics s;
-    memset(&s, 0, sizeof s);
-    if (given != NULL) {
-        s = *given;
+static void json_statistics(text *t, const aset_statistics *s) {
+    uint64_t numbers[sizeof *s / sizeof(uint64_t)] = {0}; /* its counts, all of 64 bits, in their order */
+    if (s != NULL) {
+        memcpy(numbers, s, sizeof numbers);
     }
-    put(t, ",\"rays\":{");
-    put_field(t, "primary", s.primary);
-    put_member(t, "primary_hit", s.primary_hit);
-    put_member(t, "shadow", s.shadow);
-    put_member(t, "shadow_hit", s.shadow_hit);
-    put_member(t, "reflected", s.reflected);
-    put_member(t, "refracted", s.refracted);
-    put_member(t, "secondary_hit", s.secondary_hit);
-    put_member(t, "curtailed", s.curtailed);
-    put(t, "},\"work\":{");
-    put_field(t, "cells_visited", s.cells_visited);
-    put_member(t, "nonempty_visited", s.nonempty_visited);
-    put_member(t, "tests", s.tests);
-    put_member(t, "test_hits", s.test_hits);
-    put_member(t, "approx_hits", s.approx_hits);
-    put(t, "}");
+    fill(t, ",'rays':{'primary':#,'primary_hit':#,'shadow':#,'shadow_hit':#,'reflected':#,'refracted':#,'secondary_hit':#,"
+            "'curtailed':#},'work':{'cells_visited':#,'nonempty_visited':#,'tests':#,'test_hits':#,'approx_hits':#}", numbers);
 }
 
 static void json_memory(text *t, const aset_report *r) {
-    uint32_t used = 0, capacity = 0, merged = 0;
+    uint64_t numbers[6] = {0};
 #if ASET_WITH_APPROXIMATION
 #if ASET_WITH_DRAFTS
     if (r->tracer->draft != NULL) {
-        used = capacity = r->tracer->draft->n_textures;
+        numbers[0] = numbers[1] = r->tracer->draft->n_textures;
     } else
 #endif
     if (r->tracer->summary != NULL) {
-        used = r->tracer->summary->n_textures;
-        capacity = r->tracer->summary->capacity;
-        merged = r->tracer->summary->merged;
+        numbers[0] = r->tracer->summary->n_textures;
+        numbers[1] = r->tracer->summary->capacity;
+        numbers[2] = r->tracer->summary->merged;
     }
 #endif
-    put(t, ",\"textures\":{");
-    put_field(t, "used", used);
-    put_member(t, "capacity", capacity);
-    put_member(t, "merged", merged);
-    put(t, "},\"memory\":{");
-    put_field(t, "budget", r->arena != NULL ? r->arena->size : 0);
-    put_member(t, "used", r->arena != NULL ? r->arena->used : 0);
-    put_member(t, "peak", r->arena != NULL ? r->arena->peak : 0);
-    for (int i = 0; i < ASET_CATEGORY_COUNT; i++) {
-        put_member(t, aset_category_name((aset_category)i), r->arena != NULL ? r->arena->peak_by[i] : 0);
+    if (r->arena != NULL) {
+        numbers[3] = r->arena->size;
+        numbers[4] = r->arena->used;
+        numbers[5] = r->arena->peak;
     }
-    put(t, "}");
+    fill(t, ",'textures':{'used':#,'capacity':#,'merged':#},'memory':{'budget':#,'used':#,'peak':#", numbers);
+    for (int i = 0; i < ASET_CATEGORY_COUNT; i++) {
+        const uint64_t bytes = r->arena != NULL ? r->arena->peak_by[i] : 0;
+        fill(t, ",'", NULL);
+        put(t, aset_category_name((aset_category)i));
+        fill(t, "':#", &bytes);
+    }
 }
 
 size_t aset_report_json(char *buffer, size_t size, const aset_report *report) {
     text t = {buffer, size, 0};
+    const uint64_t times[] = {time_units(report->load_s, 6), time_units(report->build_s, 6), time_units(report->render_s, 6)};
     json_scene(&t, report);
     json_structure(&t, report->tracer);
     json_statistics(&t, report->statistics);
     json_memory(&t, report);
-    put(&t, ",\"time\":{\"load_s\":");
-    put_decimal(&t, report->load_s, 6);
-    put(&t, ",\"build_s\":");
-    put_decimal(&t, report->build_s, 6);
-    put(&t, ",\"render_s\":");
-    put_decimal(&t, report->render_s, 6);
-    put(&t, "}}\n");
+    fill(&t, "},'time':{'load_s':@6,'build_s':@6,'render_s':@6}}\n", times);
     return text_end(&t);
 }
 
-/* A line of the text: a label in a column of its own, then pairs of number and words. */
+/* --- text: lines with a label in a column of its own --- */
+
 static void put_label(text *t, const char *label) {
-    size_t length = strlen(label);
+    size_t end = t->n + 12;
     put(t, label);
-    for (; length < 12; length++) {
-        put(t, " ");
+    while (t->n < end) {
+        put_char(t, ' ');
     }
 }
 
-static void put_counted(text *t, uint64_t x, const char *words) {
-    put_number(t, x);
-    put(t, words);
-}
-
 static void text_scene(text *t, const aset_report *r) {
-    aset_counts counts = counts_of(r), *c = &counts;
+    const aset_counts c = counts_of(r);
+    const uint64_t numbers[] = {c.objects, c.polygons, c.patches, c.spheres, c.cones, c.materials, c.lights};
     put_label(t, "scene");
-    put_counted(t, c->objects, " objects: ");
-    put_counted(t, c->polygons, " polygons, ");
-    put_counted(t, c->patches, " patches, ");
-    put_counted(t, c->spheres, " spheres, ");
-    put_counted(t, c->cones, " cones; ");
-    put_counted(t, c->materials, " materials, ");
-    put_counted(t, c->lights, " lights\n");
+    fill(t, "# objects: # polygons, # patches, # spheres, # cones; # materials, # lights\n", numbers);
 }
 
 static void text_space(text *t, const aset_report *r) {
     uint32_t n[3];
-    aset_structure s = structure_of(r->tracer, n);
+    const aset_structure s = structure_of(r->tracer, n);
+    const uint64_t numbers[] = {n[0], n[1], n[2], s.nonempty, s.leaves, ratio(s.references, s.nonempty, 2)};
     put_label(t, "space");
-    put(t, r->method != NULL ? r->method : "");
-    put(t, ", ");
-    put_counted(t, n[0], " x ");
-    put_counted(t, n[1], " x ");
-    put_counted(t, n[2], " divisions, ");
-    put_counted(t, s.nonempty, " of ");
-    put_counted(t, s.leaves, " cells not empty, ");
-    put_decimal(t, ratio(s.references, s.nonempty), 2);
-    put(t, " objects each\n");
+    put(t, word_of(r->method));
+    fill(t, ", # x # x # divisions, # of # cells not empty, @2 objects each\n", numbers);
     if (s.merged > 0) {
         put_label(t, "merged");
-        put_counted(t, s.merged, " extents of objects share a slice with others\n");
+        fill(t, "# extents of objects share a slice with others\n", &s.merged);
     }
     put_label(t, "approximate");
     put_kinds(t, kinds_of(r->tracer), "", "nothing");
 #if ASET_WITH_DRAFTS
-    if (r->tracer->draft != NULL) {
-        put(t, " from depth ");
-        put_counted(t, r->tracer->approx_depth, ", a draft of ");
-        put_counted(t, r->tracer->draft->n_words * sizeof(uint32_t), " bytes, ");
-        put_counted(t, r->tracer->draft->n_facets, " facets, ");
-        put_counted(t, r->tracer->draft->stage.counts.objects, " objects kept exact");
+    const aset_draft *draft = r->tracer->draft;
+    if (draft != NULL) {
+        const uint64_t about[] = {r->tracer->approx_depth, draft->n_words * sizeof(uint32_t), draft->n_facets,
+                                  draft->stage.counts.objects};
+        fill(t, " from depth #, a draft of # bytes, # facets, # objects kept exact", about);
     }
 #endif
 #if ASET_WITH_APPROXIMATION
-    if (r->tracer->summary != NULL) {
-        put(t, " from depth ");
-        put_counted(t, r->tracer->approx_depth, ", ");
-        put_counted(t, r->tracer->summary->n_textures, " textures of at most ");
-        put_counted(t, r->tracer->summary->capacity, ", ");
-        put_counted(t, r->tracer->summary->merged, " cells shared a near one");
+    const aset_summary *summary = r->tracer->summary;
+    if (summary != NULL) {
+        const uint64_t about[] = {r->tracer->approx_depth, summary->n_textures, summary->capacity, summary->merged};
+        fill(t, " from depth #, # textures of at most #, # cells shared a near one", about);
     }
 #endif
-    put(t, "\n");
+    put_char(t, '\n');
 }
 
 static void text_statistics(text *t, const aset_statistics *s) {
-    uint64_t rays = s->primary + s->shadow + s->reflected + s->refracted;
+    const uint64_t rays = s->primary + s->shadow + s->reflected + s->refracted;
+    const uint64_t counts[] = {s->primary, s->primary_hit, s->shadow, s->shadow_hit, s->reflected, s->refracted, s->curtailed};
+    const uint64_t ratios[] = {ratio(s->cells_visited, rays, 2), ratio(s->nonempty_visited, rays, 2), ratio(s->tests, rays, 2),
+                               ratio(s->test_hits, s->tests, 3)}; /* with one decimal it is a percentage */
     put_label(t, "rays");
-    put_counted(t, s->primary, " primary (");
-    put_counted(t, s->primary_hit, " hit), ");
-    put_counted(t, s->shadow, " shadow (");
-    put_counted(t, s->shadow_hit, " hit), ");
-    put_counted(t, s->reflected, " reflected, ");
-    put_counted(t, s->refracted, " refracted, ");
-    put_counted(t, s->curtailed, " curtailed\n");
+    fill(t, "# primary (# hit), # shadow (# hit), # reflected, # refracted, # curtailed\n", counts);
     put_label(t, "a ray");
-    put_decimal(t, ratio(s->cells_visited, rays), 2);
-    put(t, " cells, ");
-    put_decimal(t, ratio(s->nonempty_visited, rays), 2);
-    put(t, " of them not empty, ");
-    put_decimal(t, ratio(s->tests, rays), 2);
-    put(t, " tests, ");
-    put_decimal(t, 100 * ratio(s->test_hits, s->tests), 1);
-    put(t, " % of which hit\n");
+    fill(t, "@2 cells, @2 of them not empty, @2 tests, @1 % of which hit\n", ratios);
 }
 
 static void text_memory(text *t, const aset_arena *arena) {
+    const uint64_t numbers[] = {arena->peak, arena->size};
     put_label(t, "memory");
-    put_counted(t, arena->peak, " bytes at the peak of ");
-    put_counted(t, arena->size, "\n");
+    fill(t, "# bytes at the peak of #\n", numbers);
     for (int i = 0; i < ASET_CATEGORY_COUNT; i++) {
+        const uint64_t bytes = arena->peak_by[i];
         put(t, "  ");
         put_label(t, aset_category_name((aset_category)i));
-        put_counted(t, arena->peak_by[i], "  ");
+        fill(t, "#  ", &bytes);
         put(t, aset_category_text((aset_category)i));
-        put(t, "\n");
+        put_char(t, '\n');
     }
 }
 
 size_t aset_report_text(char *buffer, size_t size, const aset_report *report) {
     text t = {buffer, size, 0};
+    const uint64_t times[] = {time_units(report->load_s, 3), time_units(report->build_s, 3), time_units(report->render_s, 3)};
     if (report->tracer->scene != NULL) {
         text_scene(&t, report);
     }
@@ -349,11 +343,6 @@ size_t aset_report_text(char *buffer, size_t size, const aset_report *report) {
         text_memory(&t, report->arena);
     }
     put_label(&t, "time");
-    put_decimal(&t, report->load_s, 3);
-    put(&t, " s load, ");
-    put_decimal(&t, report->build_s, 3);
-    put(&t, " s build, ");
-    put_decimal(&t, report->render_s, 3);
-    put(&t, " s render\n");
+    fill(&t, "@3 s load, @3 s build, @3 s render\n", times);
     return text_end(&t);
 }

@@ -1,6 +1,8 @@
 /* status.c - a sentence for every status, and adding up statistics. */
 #include "aset/types.h"
 
+#include <string.h>
+
 const char *aset_status_text(aset_status status) {
     switch (status) {
     case ASET_OK: return "done";
@@ -18,18 +20,15 @@ const char *aset_status_text(aset_status status) {
     return "an unknown status";
 }
 
+/* All of them are counts of 64 bits, one beside the other. */
+enum { COUNTS = sizeof(aset_statistics) / sizeof(uint64_t) };
+
 void aset_statistics_add(aset_statistics *to, const aset_statistics *from) {
-    to->primary += from->primary;
-    to->primary_hit += from->primary_hit;
-    to->shadow += from->shadow;
-    to->shadow_hit += from->shadow_hit;
-    to->reflected += from->reflected;
-    to->refracted += from->refracted;
-    to->secondary_hit += from->secondary_hit;
-    to->curtailed += from->curtailed;
-    to->cells_visited += from->cells_visited;
-    to->nonempty_visited += from->nonempty_visited;
-    to->tests += from->tests;
-    to->test_hits += from->test_hits;
-    to->approx_hits += from->approx_hits;
+    uint64_t sums[COUNTS], more[COUNTS];
+    memcpy(sums, to, sizeof sums);
+    memcpy(more, from, sizeof more);
+    for (int i = 0; i < COUNTS; i++) {
+        sums[i] += more[i];
+    }
+    memcpy(to, sums, sizeof sums);
 }
