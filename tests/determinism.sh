@@ -123,7 +123,7 @@ machines() {
     for bits in 32 64; do
         suffix=
         [ $bits = 64 ] && suffix=-double
-        for level in 0 1 2 3; do machine gcc-O$level$suffix $bits "" gcc -O$level; done
+        for level in 0 1 2 3 s; do machine gcc-O$level$suffix $bits "" gcc -O$level; done
         for level in 0 2 3; do machine clang-O$level$suffix $bits "" clang -O$level; done
         # The processor's own instructions, fused multiply-add among them, which -ffp-contract=off must keep out.
         machine gcc-O3-native$suffix $bits "" gcc -O3 -march=native
@@ -138,6 +138,7 @@ machines() {
         fi
         machine aarch64$suffix $bits qemu-aarch64 aarch64-linux-gnu-gcc -static -O2
         machine armhf$suffix $bits qemu-arm arm-linux-gnueabihf-gcc -static -O2
+        machine armhf-Os$suffix $bits qemu-arm arm-linux-gnueabihf-gcc -static -Os -mthumb
         machine armhf-neon$suffix $bits qemu-arm arm-linux-gnueabihf-gcc -static -O3 -mfpu=neon-vfpv4
         machine s390x-big-endian$suffix $bits qemu-s390x s390x-linux-gnu-gcc -static -O2 -fexcess-precision=fast
     done

@@ -66,9 +66,9 @@ static uint32_t texture_number(aset_baker *b, const bin *it) {
 
 static uint64_t raw_facet(aset_baker *b, const bin *it, uint32_t side, bool is_first) {
     aset_real n = (aset_real)it->n;
-    aset_real slope_u = (aset_real)it->slope_u / n / BIN_UNIT, slope_v = (aset_real)it->slope_v / n / BIN_UNIT;
+    aset_real slope_u = real_of_whole(it->slope_u) / n / BIN_UNIT, slope_v = real_of_whole(it->slope_v) / n / BIN_UNIT;
     aset_real u = (aset_real)it->columns_u / n + R(0.5), v = (aset_real)it->columns_v / n + R(0.5);
-    aset_real height = ((aset_real)it->height / n + R(0.5)) / BIN_UNIT - slope_u * (u - 2) - slope_v * (v - 2);
+    aset_real height = (real_of_whole(it->height) / n + R(0.5)) / BIN_UNIT - slope_u * (u - 2) - slope_v * (v - 2);
     return (uint64_t)it->footprint | (uint64_t)clamp_code((height - HEIGHT_LOW) / HEIGHT_STEP, (1u << HEIGHT_BITS) - 1) << RAW_HEIGHT |
            (uint64_t)slope_code(slope_u) << RAW_SLOPE_U | (uint64_t)slope_code(slope_v) << RAW_SLOPE_V |
            (uint64_t)side << RAW_SIDE | (uint64_t)is_first << RAW_FIRST |

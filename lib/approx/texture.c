@@ -34,7 +34,7 @@ void aset_texture_sum_add(texture_sum *sum, const aset_material *material) {
     aset_real parts[TEXTURE_PARTS];
     parts_of(material, parts);
     for (int i = 0; i < TEXTURE_PARTS; i++) {
-        sum->parts[i] += (uint64_t)(real_min(parts[i], PART_MAX) * UNIT + R(0.5));
+        sum->parts[i] += (uint64_t)real_to_whole(real_min(parts[i], PART_MAX) * UNIT + R(0.5));
     }
     sum->n++;
 }
@@ -42,7 +42,7 @@ void aset_texture_sum_add(texture_sum *sum, const aset_material *material) {
 aset_material aset_texture_average(const texture_sum *sum) {
     aset_real parts[TEXTURE_PARTS];
     for (int i = 0; i < TEXTURE_PARTS; i++) {
-        parts[i] = (aset_real)((sum->parts[i] + sum->n / 2) / sum->n) / UNIT;
+        parts[i] = real_of_whole((int64_t)((sum->parts[i] + sum->n / 2) / sum->n)) / UNIT;
     }
     aset_material m;
     m.fill.r = parts[0];

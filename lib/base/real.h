@@ -74,6 +74,32 @@ static inline bool real_finite(aset_real x) {
     return x - x == 0; /* infinity - infinity and anything with NaN are NaN */
 }
 
+/*
+ * Between real numbers and whole ones of 64 bits, as casts convert them; x lies within 2^47 of 0. The compiler's library for a
+ * processor of 32 bits does it in doubles, which nothing else in the core needs: 2 kB of a program there.
+ */
+static inline int64_t real_to_whole(aset_real x) {
+#if ASET_REAL_BITS == 32 && UINTPTR_MAX <= UINT32_MAX
+    int32_t high = (int32_t)(x / 65536); /* what is left for the low part is exact */
+    return (int64_t)high * 65536 + (int32_t)(x - (aset_real)high * 65536);
+#else
+    return (int64_t)x;
+#endif
+}
+
+static inline aset_real real_of_whole(int64_t x) {
+#if ASET_REAL_BITS == 32 && UINTPTR_MAX <= UINT32_MAX
+    uint64_t size = x < 0 ? -(uint64_t)x : (uint64_t)x;
+    aset_real scale = x < 0 ? -1 : 1;
+    for (; size > UINT32_MAX; size = size >> 1 | (size & 1)) { /* 32 bits are rounded like all: the last tells of those dropped */
+        scale *= 2;
+    }
+    return (aset_real)(uint32_t)size * scale;
+#else
+    return (aset_real)x;
+#endif
+}
+
 /* base^exponent for 0 <= base <= 1 (above 1 is taken as 1) and exponent >= 0; within 2^-12 of the true value. */
 aset_real aset_real_power(aset_real base, aset_real exponent);
 

@@ -355,7 +355,7 @@ FUSED void bricks_go(const aset_space *space, const probe *ray, walk_request *wa
         } while (step == LANES_INSIDE);
     }
     walk->nonempty += n_nonempty;
-    walk->cells += (uint64_t)(int64_t)(lanes_crossings(&w) - before);
+    walk->cells += (uint64_t)real_to_whole(lanes_crossings(&w) - before);
 }
 
 #endif
