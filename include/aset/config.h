@@ -56,6 +56,18 @@
 #endif
 
 /*
+ * 1: walks are written out for each kind of space, for speed; 0: all take one, in less code: 2 kB less for approximate rays, which
+ * take longer (docs/size.md). Pictures and counts are the same. Not part of the names.
+ */
+#ifndef ASET_FUSED
+#ifdef __OPTIMIZE_SIZE__
+#define ASET_FUSED 0
+#else
+#define ASET_FUSED 1
+#endif
+#endif
+
+/*
  * 1: a build that looks for faults (make check-long): the arena's block is filled with garbage at the start, and what is given back
  * again. ASET_LARGE_MAX, ASET_RECENT and ASET_READER_BUFFER may be small in it.
  */

@@ -1,4 +1,4 @@
-/* bricks.c - the parts of the walk among bricks that happen once for a ray or a brick that is not empty. */
+/* bricks.c - the walk among bricks. */
 #include "space/bricks.h"
 
 void aset_brick_begin(brick_walk *bricks, const aset_cells *cells, const aset_slices *slices, const probe *ray,
@@ -38,3 +38,30 @@ uint32_t aset_brick_count_rest(const aset_slices *slices, const probe *ray, dda 
     }
     return leaving + aset_dda_land(way, slices, ray, &whole);
 }
+
+#if !ASET_FUSED
+void aset_bricks_walk(const aset_space *space, const probe *ray, walk_request *walk, dda *way, brick_visit visit, uint32_t held) {
+    bricks_loop(space, ray, walk, way, space->cells.faces, visit, held);
+}
+
+#if ASET_WITH_APPROXIMATION
+static aset_real visit_mark(const aset_space *space, walk_request *walk, const dda *way, uint32_t rank, uint64_t marks,
+                            uint32_t held) {
+    (void)held;
+    walk_cell cell;
+    brick_cell(&cell, space, way, rank, marks);
+    return way->t > 0 ? walk->visit(walk, &cell) : walk->limit;
+}
+
+void aset_bricks_go(const aset_space *space, const probe *ray, walk_request *walk) {
+    dda way;
+    if (!bricks_begin(&way, space, ray, walk)) {
+        return;
+    }
+    bool is_entered = space->cells.faces == 1 || way.axis >= 0; /* else the voxel has no side that the ray crossed */
+    if (is_entered || (dda_step(&way, &space->slices, ray) && way.t <= walk->limit)) {
+        aset_bricks_walk(space, ray, walk, &way, visit_mark, 0);
+    }
+}
+#endif
+#endif

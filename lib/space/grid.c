@@ -9,7 +9,7 @@
  *      +---+---+---+---+
  */
 #include "space/boxes.h"
-#include "space/bricks.h"
+#include "space/lanes.h"
 #include "space/walk.h"
 
 static aset_status grid_measure(aset_space_size *size, const aset_scene *scene, uint64_t *scratch,
@@ -32,20 +32,18 @@ static void grid_build(aset_space *space, const aset_space_size *size, aset_aren
 }
 
 /* The voxel's references that the ray meets for the first time. The new limit. */
-static aset_real visit_voxel(const aset_space *space, walk_request *walk, const dda *way, uint32_t rank, uint64_t marks) {
+static aset_real visit_voxel(const aset_space *space, walk_request *walk, const dda *way, uint32_t rank, uint64_t marks,
+                             uint32_t held) {
+    (void)held;
     const aset_references *refs = &space->references;
-    unsigned place = cells_place(way->voxel);
     int32_t before[3] = {way->voxel[0], way->voxel[1], way->voxel[2]};
     bool is_first = way->axis < 0, more = true;
     walk_cell cell;
-    cell.index = space->cells.first[rank] + bits_count(marks & ((UINT64_C(1) << place) - 1));
-    cell.face = is_first ? FACE_NONE : way->axis * 2 + (way->step[way->axis] < 0);
-    cell.t = way->t;
-    cell.n = 0;
+    brick_cell(&cell, space, way, rank, marks);
     if (!is_first) {
         before[way->axis] -= way->step[way->axis];
     }
-    for (uint32_t at = references_begin(refs, rank, marks, place); more;) {
+    for (uint32_t at = references_begin(refs, rank, marks, cells_place(way->voxel)); more;) {
         uint32_t object = bits_get(refs->objects, refs->width, at++);
         more = !references_ended(refs, at);
         if (is_first || !box_holds(space->boxes + object, before)) {
@@ -60,12 +58,7 @@ static aset_real visit_voxel(const aset_space *space, walk_request *walk, const 
     return walk->limit;
 }
 
-/* The walk: as sides.c's, from brick to brick, with the one block of a brick that a grid has. */
 static void grid_go(const aset_space *space, const probe *ray, walk_request *walk) {
-    const aset_cells *cells = &space->cells;
-    const aset_slices *slices = &space->slices;
-    voxel_box whole = slices_whole(slices);
-    brick_walk bricks;
     dda way;
 #if ASET_WITH_APPROXIMATION
     if (!walk->wants_references) {
@@ -74,38 +67,9 @@ static void grid_go(const aset_space *space, const probe *ray, walk_request *wal
         return;
     }
 #endif
-    if (cells->n_cells == 0 || (!aset_dda_inside(&way, slices, ray) && !aset_dda_enter(&way, slices, ray, &whole)) ||
-        way.t > walk->limit) {
-        return;
+    if (bricks_begin(&way, space, ray, walk)) {
+        bricks_walk(space, ray, walk, &way, 1, visit_voxel, 0);
     }
-    aset_brick_begin(&bricks, cells, slices, ray, &way);
-    bool inside = true, known = true;
-    uint64_t n_cells = 1;
-    while (inside && way.t <= walk->limit) {
-        uint32_t rank = cells_rank(cells, bricks.block);
-        if (rank == NO_CELL) {
-            inside = brick_step(&bricks, slices, ray, &way);
-            known = false;
-            continue;
-        }
-        n_cells += known ? 0 : aset_brick_land(&bricks, slices, ray, &way);
-        known = true;
-        uint64_t marks = cells->marks[rank];
-        bool left;
-        do {
-            if ((marks >> cells_place(way.voxel) & 1) != 0) {
-                walk->nonempty++;
-                walk->limit = visit_voxel(space, walk, &way, rank, marks);
-            }
-            inside = dda_step(&way, slices, ray);
-            n_cells += inside && way.t <= walk->limit;
-            left = brick_left(&way);
-        } while (inside && !left && way.t <= walk->limit);
-        if (inside && left) {
-            inside = brick_cross(&bricks, slices, ray, &way, way.axis);
-        }
-    }
-    walk->cells += n_cells + (known ? 0 : aset_brick_count_rest(slices, ray, &way, inside, walk->limit));
 }
 
 static void grid_each_cell(const aset_space *space, cell_look look, void *context) {

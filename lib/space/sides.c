@@ -22,8 +22,6 @@
  */
 #include "space/sides.h"
 
-#include "space/bricks.h"
-
 #include <string.h>
 
 #define FACES 6u
@@ -178,91 +176,21 @@ static bool sides_begin(const aset_space *space, const probe *ray, walk_request 
     return aset_dda_enter(way, &space->slices, ray, &window);
 }
 
-/* The marks of one brick on the three faces that a ray can enter by, and where their references and dense numbers are. */
-typedef struct brick {
-    uint64_t marks[3]; /* by axis; 0 where the block is empty */
-    uint32_t rank[3];
-} brick;
-
-/* The map's bits of all six faces of a brick, whose first block is given. */
-static inline unsigned brick_map(const aset_cells *cells, uint32_t first) {
-    uint32_t shift = first & 63;
-    uint64_t bits = cells->map[first >> 6] >> shift;
-    if (shift > 64 - FACES) {
-        bits |= cells->map[(first >> 6) + 1] << (64 - shift);
-    }
-    return (unsigned)bits & 63;
-}
-
-static void brick_load(brick *b, const aset_cells *cells, uint32_t block, const uint32_t faces[3]) {
-    for (int a = 0; a < 3; a++) {
-        uint32_t rank = cells_rank(cells, block + faces[a]);
-        b->rank[a] = rank;
-        b->marks[a] = rank != NO_CELL ? cells->marks[rank] : 0;
-    }
-}
-
 /* A marked cell side: its references or its number go to the visitor. The new limit. */
-static aset_real visit_side(const aset_space *space, walk_request *walk, const dda *way, const brick *b, uint32_t face,
+static aset_real visit_side(const aset_space *space, walk_request *walk, const dda *way, uint32_t rank, uint64_t marks,
                             uint32_t held) {
-    unsigned place = cells_place(way->voxel);
-    uint64_t marks = b->marks[way->axis];
-    uint32_t rank = b->rank[way->axis];
     walk_cell cell;
-    cell.index = space->cells.first[rank] + bits_count(marks & ((UINT64_C(1) << place) - 1));
-    cell.face = (int)face;
-    cell.t = way->t;
-    cell.n = 0;
-    return visit_cell(space, walk, &cell, references_begin(&space->references, rank, marks, place), way->t > 0 ? 0 : held);
+    brick_cell(&cell, space, way, rank, marks);
+    return visit_cell(space, walk, &cell, references_begin(&space->references, rank, marks, cells_place(way->voxel)),
+                      way->t > 0 ? 0 : held);
 }
 
-/*
- * The exact walk. It goes from brick to brick of 4 x 4 x 4 voxels. A brick without a mark on the three faces that this ray can
- * enter by costs one crossing and one look at the map; only in the others are voxels stepped through, each with one crossing
- * and the test of one bit of the marks at hand. Both levels cross slices in the same order, so this is the plain walk voxel
- * by voxel, with the empty part left out (tests/test_space.c walks the plain way beside it).
- */
 void aset_sides_go(const aset_space *space, const probe *ray, walk_request *walk) {
-    const aset_cells *cells = &space->cells;
-    const aset_slices *slices = &space->slices;
-    const uint32_t faces[3] = {ray->direction[0] < 0, 2 + (ray->direction[1] < 0), 4 + (ray->direction[2] < 0)};
-    const unsigned mask = 1u << faces[0] | 1u << faces[1] | 1u << faces[2];
     uint32_t held = 0;
-    brick_walk bricks;
     dda way;
-    if (cells->n_cells == 0 || !sides_begin(space, ray, walk, &way, &held) || way.t > walk->limit) {
-        return;
+    if (space->cells.n_cells > 0 && sides_begin(space, ray, walk, &way, &held) && way.t <= walk->limit) {
+        bricks_walk(space, ray, walk, &way, FACES, visit_side, held);
     }
-    aset_brick_begin(&bricks, cells, slices, ray, &way);
-    bool inside = true, known = true; /* known: way stands where the ray enters the brick */
-    uint64_t n_cells = 1, n_nonempty = 0;
-    aset_real limit = walk->limit; /* kept here, for a visit may change what walk points to */
-    while (inside && way.t <= limit) {
-        if ((brick_map(cells, bricks.block) & mask) == 0) {
-            inside = brick_step(&bricks, slices, ray, &way);
-            known = false;
-            continue;
-        }
-        n_cells += known ? 0 : aset_brick_land(&bricks, slices, ray, &way);
-        known = true;
-        brick b;
-        bool left;
-        brick_load(&b, cells, bricks.block, faces);
-        do {
-            if ((b.marks[way.axis] >> cells_place(way.voxel) & 1) != 0) {
-                n_nonempty++;
-                walk->limit = limit = visit_side(space, walk, &way, &b, faces[way.axis], held);
-            }
-            inside = dda_step(&way, slices, ray);
-            n_cells += inside && way.t <= limit;
-            left = brick_left(&way);
-        } while (inside && !left && way.t <= limit);
-        if (inside && left) {
-            inside = brick_cross(&bricks, slices, ray, &way, way.axis);
-        }
-    }
-    walk->nonempty += n_nonempty;
-    walk->cells += n_cells + (known ? 0 : aset_brick_count_rest(slices, ray, &way, inside, limit));
 }
 
 void aset_sides_each(const aset_space *space, cell_look look, void *context) {

@@ -2,7 +2,7 @@
 #ifndef ASET_SPACE_SIDES_H
 #define ASET_SPACE_SIDES_H
 
-#include "space/bricks.h"
+#include "space/lanes.h"
 #include "space/slices.h"
 #include "space/walk.h"
 
@@ -14,7 +14,7 @@ void aset_sides_build(aset_space *space, const aset_space_size *size, aset_arena
 void aset_sides_go(const aset_space *space, const probe *ray, walk_request *walk);
 
 /*
- * Both walks, in the method's own file: of the approximate one (bricks.h) there is one for equally spaced slices and one for a
+ * Both walks, in the method's own file: of the approximate one (lanes.h) there is one for equally spaced slices and one for a
  * table, as a choice at every crossing would cost a tenth of it, and a program gets that of the method it names.
  */
 #if ASET_WITH_APPROXIMATION
