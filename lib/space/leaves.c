@@ -93,29 +93,15 @@ void aset_leaves_each(const aset_space *space, cell_look look, void *context) {
     }
 }
 
-void aset_leaves_reserve(aset_space *space, const aset_space_size *size, aset_arena *arena) {
-    uint32_t n = space->scene->counts.objects;
-    aset_references *refs = &space->references;
-    space->cells.n_cells = size->n_cells;
-    refs->n = size->n_references;
-    refs->width = bits_width(n);
-    refs->first = aset_arena_alloc(arena, ((size_t)size->n_cells + 1) * 4, ASET_CATEGORY_REFERENCES);
-    refs->objects = aset_arena_alloc(arena, (size_t)ASET_BYTES_PACKED(refs->n, refs->width), ASET_CATEGORY_REFERENCES);
-    space->boxes = aset_arena_alloc(arena, (size_t)n * sizeof(aset_box), ASET_CATEGORY_REFERENCES);
-}
+/* --- building by halving --- */
 
-halving aset_halving_make(const aset_space_size *size, int ways, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
-                          uint64_t room) {
+halving aset_halving_make(const aset_space_size *size, int ways) {
     halving h;
     memset(&h, 0, sizeof h);
-    h.boxes = boxes;
-    h.n_objects = n_objects;
     h.leaf = size->leaf;
     h.depth = ways == 8 ? size->depth : 3 * size->depth;
     h.ways = ways;
-    h.size[0] = h.size[1] = h.size[2] = 1u << size->depth;
-    h.lists = lists;
-    h.room = room;
+    h.voxels[0] = h.voxels[1] = h.voxels[2] = 1u << size->depth;
     return h;
 }
 
@@ -128,6 +114,12 @@ typedef struct level {
     uint32_t children; /* the number of its first child */
     int next;          /* the child to be done next */
 } level;
+
+/* Room for the objects of a region and of all above it. */
+typedef struct lists {
+    uint32_t *objects;
+    uint64_t room;
+} lists;
 
 /* Child number child of a region: along each halved axis, bit 0 the lower half and 1 the upper. */
 static voxel_box half_of(const halving *h, const voxel_box *region, uint32_t depth, int child) {
@@ -145,45 +137,67 @@ static voxel_box half_of(const halving *h, const voxel_box *region, uint32_t dep
 }
 
 /* The objects of a child, listed behind its parent's. */
-static aset_status list_child(halving *h, const level *parent, level *child, uint64_t used) {
+static aset_status list_child(halving *h, const aset_box *boxes, const lists *all, const level *parent, level *child) {
+    uint64_t used = (uint64_t)(parent->list + parent->n - all->objects);
     child->list = parent->list + parent->n;
     child->n = 0;
     for (uint32_t i = 0; i < parent->n; i++) {
-        if (box_meets(h->boxes + parent->list[i], &child->region)) {
-            if (used + child->n == h->room) {
+        if (box_meets(boxes + parent->list[i], &child->region)) {
+            if (used + child->n == all->room) {
                 return ASET_ERR_NOMEM;
             }
             child->list[child->n++] = parent->list[i];
         }
     }
-    h->deepest = used + child->n > h->deepest ? used + child->n : h->deepest;
+    h->listed = used + child->n > h->listed ? used + child->n : h->listed;
     return ASET_OK;
 }
 
-aset_status aset_halving_run(halving *h) {
+/* A leaf's objects behind those of the leaves before. */
+static void add_leaf(halving *h, const level *l, uint32_t depth) {
+    if (h->space != NULL) {
+        aset_references *refs = &h->space->references;
+        for (uint32_t i = 0; i < l->n; i++) {
+            bits_put(refs->objects, refs->width, (size_t)h->references + i, l->list[i]);
+        }
+        if (l->n > 0) {
+            refs->first[h->nonempty] = (uint32_t)h->references;
+            refs->first[h->nonempty + 1] = (uint32_t)(h->references + l->n);
+        }
+    }
+    h->deepest = depth > h->deepest ? depth : h->deepest;
+    h->leaves++;
+    h->nonempty += l->n > 0;
+    h->references += l->n;
+}
+
+/* ASET_ERR_NOMEM if the lists need more room. Halvings nest as deep as depth: the stack here is of fixed size. */
+static aset_status run(halving *h, const aset_box *boxes, uint32_t n_objects, const lists *all) {
     level levels[HALVINGS_MAX + 1];
     uint32_t depth = 0;
-    h->deepest = h->n_objects;
-    if (h->room < h->n_objects) {
+    h->listed = n_objects;
+    if (all->room < n_objects) {
         return ASET_ERR_NOMEM;
     }
-    levels[0].list = h->lists;
-    levels[0].n = h->n_objects;
+    levels[0].list = all->objects;
+    levels[0].n = n_objects;
     levels[0].number = 0;
     levels[0].next = -1; /* not looked at yet */
     for (int a = 0; a < 3; a++) {
         levels[0].region.low[a] = 0;
-        levels[0].region.high[a] = (int32_t)h->size[a] - 1;
+        levels[0].region.high[a] = (int32_t)h->voxels[a] - 1;
     }
-    for (uint32_t i = 0; i < h->n_objects; i++) {
-        h->lists[i] = i;
+    for (uint32_t i = 0; i < n_objects; i++) {
+        all->objects[i] = i;
     }
     for (;;) {
         level *l = &levels[depth];
         if (l->next < 0 && (l->n <= h->leaf || depth == h->depth)) {
-            h->leaf_made(h->context, l->number, &l->region, depth, l->list, l->n);
+            h->leaf_made(h, l->number, &l->region, depth, l->n);
+            add_leaf(h, l, depth);
         } else if (l->next < 0) {
-            h->inner(h->context, l->number, &l->children);
+            h->inner(h, l->number, &l->children);
+            h->halved++;
             l->next = 0;
         }
         if (l->next < 0 || l->next == h->ways) { /* done with: back to the level above */
@@ -198,9 +212,59 @@ aset_status aset_halving_run(halving *h) {
         child->number = l->children + (uint32_t)l->next;
         child->next = -1;
         l->next++;
-        if (list_child(h, l, child, (uint64_t)(l->list + l->n - h->lists)) != ASET_OK) {
+        if (list_child(h, boxes, all, l, child) != ASET_OK) {
             return ASET_ERR_NOMEM;
         }
         depth++;
     }
+}
+
+aset_status aset_leaves_measure(aset_space_size *size, halving *h, const aset_scene *scene, uint64_t *scratch,
+                                size_t scratch_bytes) {
+    aset_slices slices;
+    uint32_t n = scene->counts.objects;
+    size_t boxes_bytes = ASET_ROUND((size_t)n * sizeof(aset_box));
+    size->scratch = boxes_bytes + ASET_ROUND((size_t)n * 4 * (h->depth + 1)); /* enough for any scene */
+    if (scratch_bytes < boxes_bytes) {
+        return ASET_ERR_NOMEM;
+    }
+    aset_box *boxes = (aset_box *)(void *)scratch;
+    const lists all = {(uint32_t *)(void *)((unsigned char *)scratch + boxes_bytes), (scratch_bytes - boxes_bytes) / 4};
+    aset_slices_make(&slices, scene, h->voxels);
+    aset_boxes_fill(boxes, &slices, scene);
+    if (run(h, boxes, n, &all) != ASET_OK) {
+        return ASET_ERR_NOMEM;
+    }
+    if (h->references > UINT32_MAX - 2) {
+        return ASET_ERR_LIMIT;
+    }
+    size->n_leaves = (uint32_t)h->leaves;
+    size->n_cells = (uint32_t)h->nonempty;
+    size->n_references = (uint32_t)h->references;
+    size->listed = h->listed;
+    size->references = ASET_BYTES_LEAVES(h->nonempty, h->references, n);
+    size->scratch = ASET_ROUND((size_t)h->listed * 4);
+    return ASET_OK;
+}
+
+void aset_leaves_build(halving *h, const aset_space_size *size, aset_arena *arena) {
+    aset_space *space = h->space;
+    aset_references *refs = &space->references;
+    aset_slices slices;
+    uint32_t n = space->scene->counts.objects;
+    space->cells.n_cells = size->n_cells;
+    refs->n = size->n_references;
+    refs->width = bits_width(n);
+    refs->first = aset_arena_alloc(arena, ((size_t)size->n_cells + 1) * 4, ASET_CATEGORY_REFERENCES);
+    refs->objects = aset_arena_alloc(arena, (size_t)ASET_BYTES_PACKED(refs->n, refs->width), ASET_CATEGORY_REFERENCES);
+    space->boxes = aset_arena_alloc(arena, (size_t)n * sizeof(aset_box), ASET_CATEGORY_REFERENCES);
+    aset_slices_make(&slices, space->scene, h->voxels);
+    aset_boxes_fill(space->boxes, &slices, space->scene);
+    aset_mark mark = aset_arena_mark(arena);
+    const lists all = {aset_arena_alloc(arena, size->scratch, ASET_CATEGORY_SCRATCH), size->listed};
+    (void)run(h, space->boxes, n, &all); /* the lists have the room that measuring found */
+    aset_arena_release(arena, &mark);
+    space->structure.leaves = size->n_leaves;
+    space->structure.nonempty = size->n_cells;
+    space->structure.references = size->n_references;
 }

@@ -25,39 +25,42 @@ void aset_leaves_go(const aset_space *space, const probe *ray, walk_request *wal
 /* Looks at every leaf that is not empty: for aset_method.each_cell. */
 void aset_leaves_each(const aset_space *space, cell_look look, void *context);
 
-/* Takes the references of leaves, and the objects' boxes, from the arena: ASET_BYTES_LEAVES. */
-void aset_leaves_reserve(aset_space *space, const aset_space_size *size, aset_arena *arena);
-
 /* --- building by halving --- */
 
 /*
  * A region is halved while it holds more than leaf objects and is above the depth: along all axes at once (octree), or along
- * x, y, z in turn (EXCELL). Every leaf is told with its objects, in the order of their numbers.
+ * x, y, z in turn (EXCELL). Every leaf is told with its objects, in the order of their numbers. Building goes twice through the
+ * same halving, first counting, then writing.
  */
 typedef struct halving {
-    const aset_box *boxes;
-    uint32_t n_objects, leaf, depth;
-    int ways;         /* 8: all axes at once; 2: in turn */
-    uint32_t size[3]; /* voxels along each axis of the whole: powers of two */
-    uint32_t *lists;  /* room for the objects of a region and of all above it */
-    uint64_t room;    /* entries */
-    uint64_t deepest; /* entries used at the most */
-    void *context;
+    aset_space *space;  /* NULL while counting */
+    uint32_t leaf, depth;
+    int ways;           /* 8: all axes at once; 2: in turn */
+    uint32_t voxels[3]; /* along each axis of the whole: powers of two */
+    uint64_t halved, leaves, nonempty, references; /* so far: regions halved, leaves, those not empty, objects in them */
+    uint32_t deepest;   /* leaf so far */
+    uint64_t listed;    /* objects of a region and of all above it, at the most */
     /* a region that is halved; number: what children was told for it (0 for the root) plus the child's place */
-    void (*inner)(void *context, uint32_t number, uint32_t *children);
-    void (*leaf_made)(void *context, uint32_t number, const voxel_box *region, uint32_t depth, const uint32_t *objects,
-                      uint32_t n);
+    void (*inner)(struct halving *h, uint32_t number, uint32_t *children);
+    /* a leaf of n objects, which are counted, or written, afterwards */
+    void (*leaf_made)(struct halving *h, uint32_t number, const voxel_box *region, uint32_t depth, uint32_t n);
 } halving;
 
 /*
  * A halving within the size's limits, of a whole of 2^depth voxels along each axis; in turn (ways 2), three halvings make a level.
  * What is called for regions and leaves is still to be set.
  */
-halving aset_halving_make(const aset_space_size *size, int ways, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
-                          uint64_t room);
+halving aset_halving_make(const aset_space_size *size, int ways);
 
-/* ASET_ERR_NOMEM if the lists need more room. Halvings nest as deep as depth: the stack here is of fixed size. */
-aset_status aset_halving_run(halving *h);
+/*
+ * Counts, with every object's box and the lists of what is being divided in scratch, and fills in all of size that follows from
+ * leaves; cells are the caller's. As aset_method.measure.
+ */
+aset_status aset_leaves_measure(aset_space_size *size, halving *h, const aset_scene *scene, uint64_t *scratch,
+                                size_t scratch_bytes);
+
+/* Writes h->space's references, ASET_BYTES_LEAVES, with the lists behind them until all is divided. */
+void aset_leaves_build(halving *h, const aset_space_size *size, aset_arena *arena);
 
 #define HALVINGS_MAX 30 /* the depth of ten octree levels, in single halvings */
 

@@ -7,109 +7,60 @@
  *                            EMPTY
  *      references.first      where each non-empty leaf's objects begin; one more for the end
  *      boxes                 every object's box of finest voxels: an object stands in a leaf if the box meets its region
- *
- * Building goes twice through the same halving, first counting, then writing; what is being divided is listed behind the
- * result while it is built.
  */
 #include "space/tree.h"
 
-#include "base/bits.h"
+#include <string.h>
 
 #define LEAF 0x80000000u
 #define EMPTY 0xffffffffu
 
-typedef struct tree_pass {
-    aset_space *space; /* NULL while counting */
-    uint64_t nodes, leaves, nonempty, references;
-} tree_pass;
-
-static void tree_inner(void *context, uint32_t number, uint32_t *children) {
-    tree_pass *p = context;
-    *children = (uint32_t)p->nodes;
-    if (p->space != NULL) {
-        p->space->nodes[number] = *children;
-    }
-    p->nodes += 8;
+/* The root, and eight for each region that is halved. */
+static uint64_t nodes_of(const halving *h) {
+    return 8 * h->halved + 1;
 }
 
-static void tree_leaf(void *context, uint32_t number, const voxel_box *region, uint32_t depth, const uint32_t *objects,
-                      uint32_t n) {
-    tree_pass *p = context;
+static void tree_inner(halving *h, uint32_t number, uint32_t *children) {
+    *children = (uint32_t)nodes_of(h);
+    if (h->space != NULL) {
+        h->space->nodes[number] = *children;
+    }
+}
+
+static void tree_leaf(halving *h, uint32_t number, const voxel_box *region, uint32_t depth, uint32_t n) {
     (void)region, (void)depth;
-    if (p->space != NULL) {
-        aset_references *refs = &p->space->references;
-        p->space->nodes[number] = n > 0 ? LEAF | (uint32_t)p->nonempty : EMPTY;
-        for (uint32_t i = 0; i < n; i++) {
-            bits_put(refs->objects, refs->width, (size_t)p->references + i, objects[i]);
-        }
-        if (n > 0) {
-            refs->first[p->nonempty] = (uint32_t)p->references;
-            refs->first[p->nonempty + 1] = (uint32_t)(p->references + n);
-        }
+    if (h->space != NULL) {
+        h->space->nodes[number] = n > 0 ? LEAF | (uint32_t)h->nonempty : EMPTY;
     }
-    p->leaves++;
-    p->nonempty += n > 0;
-    p->references += n;
 }
 
-static halving tree_halving(const aset_space_size *size, const aset_box *boxes, uint32_t n_objects, uint32_t *lists,
-                            uint64_t room, tree_pass *pass) {
-    halving h = aset_halving_make(size, 8, boxes, n_objects, lists, room);
-    h.context = pass;
+static halving tree_halving(const aset_space_size *size, aset_space *space) {
+    halving h = aset_halving_make(size, 8);
+    h.space = space;
     h.inner = tree_inner;
     h.leaf_made = tree_leaf;
     return h;
 }
 
 aset_status aset_tree_measure(aset_space_size *size, const aset_scene *scene, uint64_t *scratch, size_t scratch_bytes) {
-    aset_slices slices;
-    uint32_t n = scene->counts.objects;
-    tree_pass pass = {NULL, 1, 0, 0, 0};
-    size->divisions[0] = size->divisions[1] = size->divisions[2] = 1u << size->depth;
-    aset_slices_make(&slices, scene, size->divisions);
-    size_t boxes_bytes = ASET_ROUND((size_t)n * sizeof(aset_box));
-    size->scratch = boxes_bytes + ASET_ROUND((size_t)n * 4 * (size->depth + 1)); /* enough for any scene */
-    if (scratch_bytes < boxes_bytes) {
-        return ASET_ERR_NOMEM;
+    halving h = tree_halving(size, NULL);
+    memcpy(size->divisions, h.voxels, sizeof h.voxels);
+    aset_status status = aset_leaves_measure(size, &h, scene, scratch, scratch_bytes);
+    if (status != ASET_OK || nodes_of(&h) >= LEAF) {
+        return status != ASET_OK ? status : ASET_ERR_LIMIT;
     }
-    aset_box *boxes = (aset_box *)(void *)scratch;
-    aset_boxes_fill(boxes, &slices, scene);
-    halving h = tree_halving(size, boxes, n, (uint32_t *)(void *)((unsigned char *)scratch + boxes_bytes),
-                             (scratch_bytes - boxes_bytes) / 4, &pass);
-    if (aset_halving_run(&h) != ASET_OK) {
-        return ASET_ERR_NOMEM;
-    }
-    if (pass.references > UINT32_MAX - 2 || pass.nodes >= LEAF) {
-        return ASET_ERR_LIMIT;
-    }
-    size->n_nodes = (uint32_t)pass.nodes;
-    size->n_leaves = (uint32_t)pass.leaves;
-    size->n_cells = (uint32_t)pass.nonempty;
-    size->n_references = (uint32_t)pass.references;
-    size->listed = h.deepest;
-    size->cells = ASET_ROUND((size_t)pass.nodes * 4);
-    size->references = ASET_BYTES_LEAVES(pass.nonempty, pass.references, n);
-    size->scratch = ASET_ROUND((size_t)h.deepest * 4);
+    size->n_nodes = (uint32_t)nodes_of(&h);
+    size->cells = ASET_ROUND((size_t)size->n_nodes * 4);
     return ASET_OK;
 }
 
 void aset_tree_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
-    uint32_t n = space->scene->counts.objects;
-    tree_pass pass = {space, 1, 0, 0, 0};
+    halving h = tree_halving(size, space);
     aset_slices_make(&space->slices, space->scene, size->divisions);
     space->depth = size->depth;
     space->nodes = aset_arena_alloc(arena, (size_t)size->n_nodes * 4, ASET_CATEGORY_CELLS);
-    aset_leaves_reserve(space, size, arena);
-    aset_boxes_fill(space->boxes, &space->slices, space->scene);
-    aset_mark mark = aset_arena_mark(arena);
-    uint32_t *lists = aset_arena_alloc(arena, size->scratch, ASET_CATEGORY_SCRATCH);
-    halving h = tree_halving(size, space->boxes, n, lists, size->listed, &pass);
-    (void)aset_halving_run(&h); /* the lists have the room that measuring found */
-    aset_arena_release(arena, &mark);
-    space->structure.interior = (size->n_nodes - 1) / 8;
-    space->structure.leaves = size->n_leaves;
-    space->structure.nonempty = size->n_cells;
-    space->structure.references = size->n_references;
+    aset_leaves_build(&h, size, arena);
+    space->structure.interior = h.halved;
 }
 
 leaf aset_tree_find(const aset_space *space, const int32_t voxel[3]) {
