@@ -59,6 +59,7 @@ static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const pro
     return true;
 }
 
+#if ASET_FUSED
 /* Below this a component of a unit direction moves a ray by less than any margin: as aset_probe_make's. */
 #define STILL R(8.7e-19)
 
@@ -76,12 +77,20 @@ static void walk_probe(probe *ray, aset_vec3 origin, aset_vec3 direction) {
     walk_axis(ray, 2, origin.z, direction.z);
 }
 
+/* aset_approach_ready for such a ray. */
+static aset_real walk_ready(probe *ray, const aset_scene *scene, aset_vec3 origin, aset_vec3 direction) {
+    origin = aset_approach_origin(scene, origin);
+    walk_probe(ray, origin, direction);
+    return approach_entered(scene, origin) ? 0 : aset_approach_move(ray, scene);
+}
+#else
+#define walk_ready aset_approach_ready
+#endif
+
 static uint32_t summary_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                              aset_statistics *statistics) {
     probe ray;
-    aset_vec3 start = aset_approach_origin(tracer->scene, origin);
-    walk_probe(&ray, start, direction);
-    aset_real moved = approach_entered(tracer->scene, start) ? 0 : aset_approach_move(&ray, tracer->scene);
+    aset_real moved = walk_ready(&ray, tracer->scene, origin, direction);
     hit->near = probe_origin(&ray);
     hit->cover = 1;
     hit->scene = NULL;
