@@ -19,6 +19,7 @@ static inline aset_real farther(aset_real low, aset_real high, aset_real origin)
     return real_max(high - origin, origin - low);
 }
 
+#if ASET_FUSED
 /* Narrows the ray's stay in a box by one axis, as aset_probe_box does. False: it misses. */
 static inline bool narrow(const probe *ray, int a, aset_real low, aset_real high, aset_real *t_in, aset_real *t_out) {
     aset_real origin = ray->origin[a], inverse = ray->inverse[a];
@@ -31,20 +32,29 @@ static inline bool narrow(const probe *ray, int a, aset_real low, aset_real high
     return true;
 }
 
+/* aset_probe_box, axis by axis without a loop. */
+static inline bool probe_in(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real *t_in, aset_real *t_out) {
+    *t_in = -REAL_INFINITY;
+    *t_out = REAL_INFINITY;
+    return narrow(ray, 0, low.x, high.x, t_in, t_out) && narrow(ray, 1, low.y, high.y, t_in, t_out) &&
+           narrow(ray, 2, low.z, high.z, t_in, t_out) && *t_in <= *t_out;
+}
+#else
+#define probe_in aset_probe_box
+#endif
+
 /*
  * How far the ray is from the scene's box: t at which it enters, 0 if it misses or has entered. The box is grown by more than any
  * object's, and by the rounding of its sides' t from here: a ray that misses it is refused by the clamp of every object too.
  */
 static aset_real distance_to(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real margin) {
     const aset_real *o = ray->origin;
-    aset_real t_in = -REAL_INFINITY, t_out = REAL_INFINITY;
+    aset_real t_in, t_out;
     aset_real away = real_max(farther(low.x, high.x, o[0]), farther(low.y, high.y, o[1]));
     away = real_max(away, farther(low.z, high.z, o[2]));
     aset_real grown = 4 * margin + 4 * REAL_UNIT * away;
-    bool meets = narrow(ray, 0, low.x - grown, high.x + grown, &t_in, &t_out) &&
-                 narrow(ray, 1, low.y - grown, high.y + grown, &t_in, &t_out) &&
-                 narrow(ray, 2, low.z - grown, high.z + grown, &t_in, &t_out);
-    return meets && t_in <= t_out && t_in > 0 ? t_in : 0;
+    aset_vec3 more = vec(grown, grown, grown);
+    return probe_in(ray, vec_sub(low, more), vec_add(high, more), &t_in, &t_out) && t_in > 0 ? t_in : 0;
 }
 
 aset_real aset_approach_move(probe *ray, const aset_scene *scene) {

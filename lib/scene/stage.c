@@ -63,13 +63,21 @@ static aset_status emit_view(const stage *s, aset_real aspect) {
     return s->sink->view(s->sink->context, &view);
 }
 
-static aset_status emit_light(const stage *s, aset_vec3 towards, aset_real brightness) {
-    aset_light light;
-    memset(&light, 0, sizeof light);
-    light.position = vec_along(s->centre, 4 * s->radius, towards);
-    light.colour.r = light.colour.g = light.colour.b = brightness;
-    light.has_colour = true;
-    return s->sink->light(s->sink->context, &light);
+/* A key light from the left, and a dim one from the right and the front. */
+static aset_status emit_lights(const stage *s) {
+    static const struct {
+        aset_real right, up, front, brightness;
+    } lights[] = {{R(-1.2), R(1.6), R(0.8), R(0.85)}, {R(1.2), R(0.8), R(1.6), R(0.3)}};
+    aset_status status = ASET_OK;
+    for (int i = 0; i < 2 && status == ASET_OK; i++) {
+        aset_light light;
+        memset(&light, 0, sizeof light);
+        light.position = vec_along(s->centre, 4 * s->radius, turned(s, lights[i].right, lights[i].up, lights[i].front));
+        light.colour.r = light.colour.g = light.colour.b = lights[i].brightness;
+        light.has_colour = true;
+        status = s->sink->light(s->sink->context, &light);
+    }
+    return status;
 }
 
 static aset_status emit_ground(const stage *s) {
@@ -123,7 +131,6 @@ aset_status aset_stage_emit(const aset_sink *sink, const aset_vec3 *low, const a
     s.lowest = s.up == ASET_UP_Z ? low->z : low->y;
     aset_status status = emit_background(&s);
     status = status == ASET_OK ? emit_view(&s, aspect) : status;
-    status = status == ASET_OK ? emit_light(&s, turned(&s, R(-1.2), R(1.6), R(0.8)), R(0.85)) : status;
-    status = status == ASET_OK ? emit_light(&s, turned(&s, R(1.2), R(0.8), R(1.6)), R(0.3)) : status;
+    status = status == ASET_OK ? emit_lights(&s) : status;
     return status == ASET_OK && !o->no_ground ? emit_ground(&s) : status;
 }
