@@ -94,8 +94,7 @@ static aset_status accept_ray(const aset_tracer *tracer, const aset_ray *ray, bo
     if (tracer == NULL || ray == NULL || !aset_query_can(tracer, approximate)) {
         return ASET_ERR_ARGUMENT;
     }
-    *direction = aset_vec_unit(ray->direction);
-    *length = aset_vec_length(ray->direction);
+    *direction = aset_vec_unit_length(ray->direction, length);
     bool fine = vec_finite(ray->origin) && vec_finite(ray->direction) && real_finite(*length) && *length > 0 &&
                 ray->t_max == ray->t_max;
     return fine ? ASET_OK : ASET_ERR_ARGUMENT;
