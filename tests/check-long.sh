@@ -1,6 +1,6 @@
 #!/bin/bash
 # check-long.sh BUILD [STEP ...] - what takes too long for `make test`, each step with its figure at the end; all of them, or those named:
-#   matrix      the unit tests by gcc and clang, float and double, -O0 and -O2
+#   matrix      the unit tests by gcc and clang, float and double, -O0, -O2 and -Os (which has ASET_FUSED=0)
 #   sanitize    by both compilers with the address and undefined-behaviour sanitizers, float and double
 #   memory      clang's memory sanitizer over all pictures of tests/determinism.c and all seeds and kept crashes of the fuzzers
 #   hostile     the unit tests and the pictures with tiny limits and an arena that is full of garbage
@@ -42,7 +42,7 @@ unit_tests() {
 step_matrix() {
     local cc level
     for cc in gcc clang; do
-        for level in 0 2; do
+        for level in 0 2 s; do
             unit_tests "$cc-O$level" $cc "" "-O$level -g"
             unit_tests "$cc-O$level-double" $cc "-DASET_REAL_BITS=64" "-O$level -g"
         done

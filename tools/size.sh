@@ -226,7 +226,9 @@ say "|---|---|---|---|---|"
     measure "the same, and drafts opened and drawn, with beams and reach: all that draws" 65536 -DDRAFTS_TOO
     measure "all that draws, and reports" - -DDRAFTS_TOO $(kept '^aset_report')
     measure "all that draws, and pictures from a stream (flat.h)" - -DDRAFTS_TOO $(kept '^aset_flat')
+    measure "all that draws, reports, and pictures from a stream" - -DDRAFTS_TOO $(kept '^aset_(report|flat)')
     measure "all that draws, and baking drafts" - -DDRAFTS_TOO $(kept '^aset_baker')
+    measure "every public function but those that bake" - -DDRAFTS_TOO $(kept '^aset_([^b]|b[^a])')
     measure "every public function" - -DDRAFTS_TOO $(kept '^aset_')
     # nothing dropped: every function of the core, and what these ask of libm, libgcc and for mem*
     arm_link="--specs=nano.specs -nostartfiles -Wl,-emain"
