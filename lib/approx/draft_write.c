@@ -6,6 +6,7 @@
  * and then moved to the region's start.
  */
 #include "approx/baker.h"
+#include "base/whole.h"
 
 #if ASET_WITH_DRAFTS
 
@@ -24,12 +25,12 @@ static uint32_t slope_code(aset_real slope) {
  * index of refraction to 4 bits.
  */
 static uint64_t coarsen(uint64_t part, int number) {
-    uint64_t step = 1u << 14;
+    unsigned bits = 14; /* of a step */
     if (number == 5 || number == 7) {
-        for (step = 1; part / step >= 16; step *= 2) {
+        for (bits = 0; part >> bits >= 16; bits++) {
         }
     }
-    return (part + step / 2) / step * step;
+    return (part + (UINT64_C(1) << bits) / 2) >> bits << bits;
 }
 
 /* The number of a texture in the baker's list: its own, a new one, or the nearest if the list is full. */
@@ -43,8 +44,10 @@ static uint32_t texture_number(aset_baker *b, const bin *it) {
     bool is_mixed = false; /* a single material's sums divide without a rest */
     sum.n = 1;
     for (int p = 0; p < TEXTURE_PARTS; p++) {
-        sum.parts[p] = (it->parts[p] + it->n / 2) / it->n;
-        is_mixed = is_mixed || it->parts[p] % it->n != 0;
+        uint64_t rest;
+        (void)aset_whole_divide(it->parts[p], it->n, &rest);
+        sum.parts[p] = whole_quotient(it->parts[p] + it->n / 2, it->n);
+        is_mixed = is_mixed || rest != 0;
     }
     for (int p = 0; p < TEXTURE_PARTS && is_mixed; p++) {
         sum.parts[p] = coarsen(sum.parts[p], p);

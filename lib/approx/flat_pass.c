@@ -11,6 +11,7 @@
 #include "approx/flat.h"
 
 #include "approx/summary.h"
+#include "base/whole.h"
 #include "scene/shape.h"
 #include "space/cells.h"
 
@@ -132,7 +133,7 @@ static bool take_numbers(aset_flat *f, size_t *need) {
 static aset_status end_marks(aset_flat *f) {
     size_t need;
     if (!aset_cells_rank_marks(&f->space.cells) ||
-        (f->counts.objects > 0 && f->largest_part >= UINT64_MAX / f->counts.objects)) {
+        (f->counts.objects > 0 && f->largest_part >= whole_quotient(UINT64_MAX, f->counts.objects))) {
         return ASET_ERR_LIMIT;
     }
     f->work_mark = aset_arena_mark(f->arena);

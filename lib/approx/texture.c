@@ -9,6 +9,7 @@
 #include "approx/texture.h"
 
 #include "base/real.h"
+#include "base/whole.h"
 
 #if ASET_WITH_APPROXIMATION
 
@@ -42,7 +43,7 @@ void aset_texture_sum_add(texture_sum *sum, const aset_material *material) {
 aset_material aset_texture_average(const texture_sum *sum) {
     aset_real parts[TEXTURE_PARTS];
     for (int i = 0; i < TEXTURE_PARTS; i++) {
-        parts[i] = real_of_whole((int64_t)((sum->parts[i] + sum->n / 2) / sum->n)) / UNIT;
+        parts[i] = real_of_whole((int64_t)whole_quotient(sum->parts[i] + sum->n / 2, sum->n)) / UNIT;
     }
     aset_material m;
     m.fill.r = parts[0];
@@ -112,7 +113,7 @@ uint32_t aset_texture_nearest(const aset_summary *summary, const aset_material *
 unsigned aset_texture_slot(const texture_sum *sum) {
     uint64_t hash = 0;
     for (int i = 0; i < TEXTURE_PARTS; i++) {
-        hash = (hash ^ (sum->parts[i] / sum->n)) * UINT64_C(0x9e3779b97f4a7c15);
+        hash = (hash ^ whole_quotient(sum->parts[i], sum->n)) * UINT64_C(0x9e3779b97f4a7c15);
     }
     return (unsigned)(hash >> 58); /* 0 to TEXTURE_RECENT - 1 */
 }

@@ -28,6 +28,13 @@
 
 #define R(x) ((aset_real)(x))
 
+/* A private function that is rarely needed, and long: it stays one where several call it. */
+#if defined(__GNUC__)
+#define APART static __attribute__((noinline))
+#else
+#define APART static
+#endif
+
 #if ASET_REAL_BITS == 32
 #define REAL_MAX FLT_MAX
 #define REAL_LEAST FLT_MIN /* the smallest that is no denormal */

@@ -4,6 +4,8 @@
  */
 #include "aset/report.h"
 
+#include "base/whole.h"
+
 #include <float.h>
 #include <string.h>
 
@@ -32,8 +34,9 @@ static void put_number(text *t, uint64_t x, unsigned least) {
     unsigned i = 20;
     digits[i] = 0;
     do {
-        digits[--i] = (char)('0' + x % 10);
-        x /= 10;
+        uint64_t digit;
+        x = aset_whole_divide(x, 10, &digit);
+        digits[--i] = (char)('0' + digit);
     } while (x > 0 || i > 20 - least);
     put(t, digits + i);
 }
@@ -44,9 +47,10 @@ static void put_decimal(text *t, uint64_t units, unsigned decimals) {
     for (unsigned i = 0; i < decimals; i++) {
         scale *= 10;
     }
-    put_number(t, units / scale, 1);
+    uint64_t fraction;
+    put_number(t, aset_whole_divide(units, scale, &fraction), 1);
     put_char(t, '.');
-    put_number(t, units % scale, decimals);
+    put_number(t, fraction, decimals);
 }
 
 /*
@@ -80,10 +84,9 @@ static uint64_t ratio(uint64_t a, uint64_t b, unsigned decimals) {
     for (; b > UINT64_MAX / 10; b /= 2) {
         a /= 2;
     }
-    uint64_t units = a / b, rest = a % b;
+    uint64_t rest, units = aset_whole_divide(a, b, &rest);
     for (; decimals > 0; decimals--) {
-        units = units * 10 + rest * 10 / b;
-        rest = rest * 10 % b;
+        units = units * 10 + aset_whole_divide(rest * 10, b, &rest);
     }
     return units + (rest >= b - rest);
 }

@@ -18,7 +18,7 @@
 #endif
 
 /* a times STEP to the power of *steps; a is not 0. From the ends of the range, denormals too, at most 15 steps. */
-static aset_vec3 in_range(aset_vec3 a, int *steps) {
+APART aset_vec3 in_range(aset_vec3 a, int *steps) {
     aset_real largest = vec_largest(a);
     for (; largest < LEAST; largest *= STEP, ++*steps) {
         a = vec_scale(a, STEP);
