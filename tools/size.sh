@@ -256,6 +256,14 @@ if [ -n "$page" ] && [ $has_arm = 1 ]; then
         echo
         echo "\`make size\` fails where the first row reaches 12,288 bytes, exact MSET with polygons 24,576 or all that draws 65,536, each in the first"
         echo "column. Every public function together, which takes baking besides, is above 65,536."
+        echo
+        echo "File by file, for Cortex-M4F and not as a whole, so without what one file's optimizing saves in another:"
+        echo
+        echo "| file | bytes |"
+        echo "|---|---|"
+        arm-none-eabi-size "$(objects m4 arm-none-eabi-gcc "$m4")"/*.o | # lib_room_some_noun.c.o
+            awk 'NR > 1 { sub(/.*\/lib_/, "lib/", $6); sub(/_/, "/", $6); sub(/\.o$/, "", $6); print $1, $6 }' | sort -k 1,1nr -k 2 |
+            awk '{ print "| " $2 " | " $1 " |"; n += $1 } END { print "| all | " n " |" }'
     } > "$page"
 fi
 exit $bad
