@@ -62,7 +62,7 @@ static void add_sample(aset_baker *b, const sheet *s, int32_t i, int32_t j) {
     it->n++;
     it->columns_u += (uint32_t)i & 3u;
     it->columns_v += (uint32_t)j & 3u;
-    it->height += (int64_t)((height - (aset_real)(int32_t)k * 4) * BIN_UNIT);
+    it->height += real_to_whole((height - (aset_real)(int32_t)k * 4) * BIN_UNIT);
     it->slope_u += s->unit_u;
     it->slope_v += s->unit_v;
     if (!b->single) {
@@ -74,7 +74,7 @@ static void add_sample(aset_baker *b, const sheet *s, int32_t i, int32_t j) {
 
 static int64_t to_units(aset_real slope) {
     slope = real_min(real_max(slope, -1), 1); /* no number, if the source gives others than it measured, becomes -1 */
-    return (int64_t)(slope * BIN_UNIT + (R(0.5) - (aset_real)(slope < 0)));
+    return real_to_whole(slope * BIN_UNIT + (R(0.5) - (aset_real)(slope < 0)));
 }
 
 /* The first column whose middle is not below x, or how many there are; x of any size. */
