@@ -34,7 +34,7 @@ static inline aset_vec3 vec_cross(aset_vec3 a, aset_vec3 b) {
     return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-static inline aset_real vec_largest(aset_vec3 a) {
+ONE_OR_MANY aset_real vec_largest(aset_vec3 a) {
     return real_max(real_abs(a.x), real_max(real_abs(a.y), real_abs(a.z)));
 }
 
