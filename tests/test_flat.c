@@ -291,6 +291,96 @@ static void test_flat__order_of_objects_does_not_matter(void **state) {
     }
 }
 
+/* The least and the largest that a scene keeps as they are (scene.c), and what has lost all but seven bits to underflow. */
+#if ASET_REAL_BITS == 32
+#define EDGE_LOW R(0x1p-24)
+#define EDGE_HIGH R(0x1p48)
+#define DENORMAL R(1e-43)
+#else
+#define EDGE_LOW R(0x1p-192)
+#define EDGE_HIGH R(0x1p384)
+#define DENORMAL R(1e-321)
+#endif
+
+typedef struct odd_sizes {
+    aset_real unit;    /* of a few things near the origin */
+    aset_real refused; /* of a polygon that is given up after two points; 0: there is none */
+    bool at_first;
+    aset_real wider;
+} odd_sizes;
+
+static void give_up(const aset_sink *sink, aset_real size) {
+    aset_vec3 a = {size, 0, -size}, b = {0, size / 2, size};
+    assert_int_equal(sink->polygon_begin(sink->context, 4, false), ASET_OK);
+    assert_int_equal(sink->polygon_point(sink->context, &a, NULL), ASET_OK);
+    assert_int_equal(sink->polygon_point(sink->context, &b, NULL), ASET_OK);
+    assert_int_equal(sink->polygon_end(sink->context), ASET_ERR_GEOMETRY);
+}
+
+static aset_status emit_odd_sizes(const aset_sink *sink, const void *context) {
+    const odd_sizes *o = context;
+    aset_real u = o->unit;
+    const aset_material material = plain_material();
+    aset_status status = sink->material(sink->context, &material);
+#if ASET_WITH_POLYGONS
+    aset_vec3 corners[4] = {{0, 0, u}, {u, 0, u}, {u, u, u / 2}, {0, u, 0}};
+    if (o->refused > 0 && o->at_first) {
+        give_up(sink, o->refused);
+    }
+    status = status == ASET_OK ? aset_sink_polygon(sink, corners, NULL, 4) : status;
+    if (o->refused > 0 && !o->at_first) {
+        give_up(sink, o->refused);
+    }
+    corners[2].z = -u;
+    status = status == ASET_OK ? aset_sink_polygon(sink, corners, NULL, 3) : status;
+#endif
+    aset_vec3 centre = {u * R(0.75), -u / 3, u / 8};
+    status = status == ASET_OK ? sink->sphere(sink->context, &centre, u / 2) : status;
+#if ASET_WITH_CONES
+    for (int i = 0; i < 24; i++) { /* the outermost, where bounds are least exact */
+        aset_real x = u * R(0.04) * (aset_real)(i % 5), y = u * R(0.03) * (aset_real)(i % 7), z = u * R(0.02) * (aset_real)(i % 11);
+        aset_vec3 base = {u / 3, y, -z}, apex = {-x, u / 11, u * R(0.6)};
+        status = status == ASET_OK ? sink->cone(sink->context, &base, u + y, &apex, u + x + z + o->wider * u) : status;
+    }
+#endif
+    return status;
+}
+
+/*
+ * The scale of a whole scene and of a stream is decided by the same box: not by what was refused, nor by centres without their radii,
+ * and it holds all that is in it where the caller's numbers are denormal.
+ */
+static void test_flat__sizes_at_the_ends_of_the_numbers(void **state) {
+    (void)state;
+    static const aset_real units[] = {1, R(0.9), DENORMAL, 100 * DENORMAL, DENORMAL * R(1e6)};
+    static const aset_real edges[] = {EDGE_LOW, EDGE_HIGH, EDGE_LOW * R(1e-6), 1};
+    for (size_t i = 0; i < COUNT_OF(units) * COUNT_OF(edges) * 6; i++) {
+        aset_real unit = units[i % COUNT_OF(units)], edge = edges[i / COUNT_OF(units) % COUNT_OF(edges)];
+        size_t how = i / COUNT_OF(units) / COUNT_OF(edges);
+        static const aset_real refused[] = {0, 1, R(0x1p80)};
+        odd_sizes o = {unit >= R(0.9) ? unit * edge : unit, refused[how % 3], how >= 3, R(0.1) * (aset_real)(i % 7)};
+        source from = {emit_odd_sizes, &o};
+        const aset_method *method = methods[i % 2];
+        aset_space_options options = divisions_of(19, 29, 36);
+        stage s;
+        made m;
+        stage_open(&s, emit_odd_sizes, &o, ROOM);
+        assert_int_equal(make(&m, &from, method, &options, ROOM), ASET_OK);
+        assert_true(s.scene.scale == m.stage.scale);
+        assert_memory_equal(&s.scene.low, &m.stage.low, sizeof s.scene.low);
+        assert_memory_equal(&s.scene.high, &m.stage.high, sizeof s.scene.high);
+        for (uint32_t k = 0; k < s.scene.counts.objects; k++) {
+            aset_vec3 low, high;
+            aset_object_own_bounds(&s.scene, k, &low, &high);
+            assert_true(vec_largest(vec_sub(vec_min(low, s.scene.low), s.scene.low)) <= s.scene.margin);
+            assert_true(vec_largest(vec_sub(vec_max(high, s.scene.high), s.scene.high)) <= s.scene.margin);
+        }
+        compare(&s, &m, method, &options, i);
+        unmake(&m);
+        stage_close(&s);
+    }
+}
+
 /* More materials than cells are told apart by, in lists that are long enough and too short. */
 static void test_flat__a_thousand_materials(void **state) {
     (void)state;
@@ -610,6 +700,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_flat__is_the_whole_scene_s),
         cmocka_unit_test(test_flat__order_of_objects_does_not_matter),
+        cmocka_unit_test(test_flat__sizes_at_the_ends_of_the_numbers),
         cmocka_unit_test(test_flat__a_thousand_materials),
         cmocka_unit_test(test_flat__passes),
         cmocka_unit_test(test_flat__in_the_least_bytes),

@@ -113,9 +113,8 @@ typedef struct aset_scene {
     aset_view view;
     bool has_view;
     uint32_t n_uncoloured; /* lights without a colour of their own */
-    aset_real largest; /* coordinate or radius, without its sign */
-    aset_real scale;   /* a power of two, 1 unless largest is very large or small: coordinates, and the three fields below, are
-                          kept times this */
+    aset_real scale;  /* a power of two, 1 unless the box is very large or small: coordinates, and the three fields below, are
+                         kept times this */
     aset_real margin; /* by which the boxes of objects are grown against rounding */
     aset_vec3 low, high;
     aset_outline outline;

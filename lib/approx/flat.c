@@ -111,10 +111,10 @@ static bool is_repeated(aset_flat *f, const voxel_box *box) {
     return same;
 }
 
-/* An object that the counter has taken. */
+/* An object that the counter has taken, by its bounds as a scene computes them: in its own lengths. */
 static aset_status take_object(aset_flat *f, aset_vec3 low, aset_vec3 high) {
     aset_cells *cells = &f->space.cells;
-    voxel_box box = aset_slices_box(&f->space.slices, &f->stage, vec_scale(low, f->stage.scale), vec_scale(high, f->stage.scale));
+    voxel_box box = aset_slices_box(&f->space.slices, &f->stage, low, high);
     if (f->phase == FLAT_NUMBERS && f->number == 0) {
         f->number = find_number(f);
     }
@@ -196,15 +196,16 @@ static aset_status take_polygon_point(void *context, const aset_vec3 *point, con
 static aset_status take_polygon_end(void *context) {
     aset_flat *f = context;
     aset_status status = f->checks.polygon_end(&f->counter);
-    return status == ASET_OK ? take_object(f, f->counter.outline.low, f->counter.outline.high) : status;
+    const aset_outline *outline = &f->counter.outline;
+    return status == ASET_OK ? take_object(f, scene_point(&f->stage, outline->low), scene_point(&f->stage, outline->high)) : status;
 }
 #endif
 
 #if ASET_WITH_SPHERES
 static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real radius) {
     aset_flat *f = context;
-    const aset_real at[ASET_COORDINATES_SPHERE] = {centre->x, centre->y, centre->z, radius};
-    aset_vec3 low, high;
+    aset_vec3 low, high, c = scene_point(&f->stage, *centre);
+    const aset_real at[ASET_COORDINATES_SPHERE] = {c.x, c.y, c.z, radius * f->stage.scale};
     aset_status status = f->checks.sphere(&f->counter, centre, radius);
     if (status != ASET_OK) {
         return status;
@@ -218,9 +219,9 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
 static aset_status take_cone(void *context, const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
                              aset_real apex_radius) {
     aset_flat *f = context;
-    const aset_real at[ASET_COORDINATES_CONE] = {base->x, base->y, base->z, base_radius,
-                                                 apex->x, apex->y, apex->z, apex_radius};
-    aset_vec3 low, high;
+    aset_vec3 low, high, b = scene_point(&f->stage, *base), a = scene_point(&f->stage, *apex);
+    const aset_real at[ASET_COORDINATES_CONE] = {b.x, b.y, b.z, base_radius * f->stage.scale,
+                                                 a.x, a.y, a.z, apex_radius * f->stage.scale};
     aset_status status = f->checks.cone(&f->counter, base, base_radius, apex, apex_radius);
     if (status != ASET_OK) {
         return status;

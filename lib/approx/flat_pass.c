@@ -319,7 +319,7 @@ aset_status aset_flat_init(aset_flat *flat, aset_arena *arena, const aset_counte
         return status;
     }
     if (flat->counts.objects > 0) { /* in its own lengths, as a scene has them */
-        aset_real scale = aset_scene_scale_for(real_max(vec_largest(flat->low), vec_largest(flat->high)));
+        aset_real scale = aset_scene_scale_for(flat->low, flat->high);
         flat->stage.scale = scale;
         flat->stage.low = vec_scale(flat->low, scale);
         flat->stage.high = vec_scale(flat->high, scale);

@@ -52,6 +52,7 @@
 #define REAL_LEAST DBL_MIN
 #define REAL_UNIT (DBL_EPSILON / 2)
 #endif
+#define REAL_DENORMAL (REAL_LEAST * (2 * REAL_UNIT)) /* the smallest of all */
 #define REAL_INFINITY ((aset_real)INFINITY)
 
 /*

@@ -114,10 +114,23 @@ static aset_vec3 disc_reach(aset_vec3 k) {
     return vec(real_sqrt(k.y * k.y + k.z * k.z), real_sqrt(k.x * k.x + k.z * k.z), real_sqrt(k.x * k.x + k.y * k.y));
 }
 
+/*
+ * One of its components for a radius. A denormal product is rounded up: a scene of such lengths keeps them times a power of two, where
+ * the product has all its bits, and its box, which comes from the caller's numbers, must hold what is in it.
+ */
+static aset_real reach_of(aset_real reach, aset_real radius) {
+    aset_real product = reach * radius;
+    return product < REAL_LEAST && reach > 0 && radius > 0 ? product + REAL_DENORMAL : product;
+}
+
+static aset_vec3 reach_for(aset_vec3 reach, aset_real radius) {
+    return vec(reach_of(reach.x, radius), reach_of(reach.y, radius), reach_of(reach.z, radius));
+}
+
 void aset_cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
     cone c = cone_of(at);
     aset_vec3 apex = vec(at[4], at[5], at[6]);
-    aset_vec3 reach = disc_reach(c.axis), base_reach = vec_scale(reach, c.radius), apex_reach = vec_scale(reach, real_abs(at[7]));
+    aset_vec3 reach = disc_reach(c.axis), base_reach = reach_for(reach, c.radius), apex_reach = reach_for(reach, real_abs(at[7]));
     *low = vec_min(vec_sub(c.base, base_reach), vec_sub(apex, apex_reach));
     *high = vec_max(vec_add(c.base, base_reach), vec_add(apex, apex_reach));
 }

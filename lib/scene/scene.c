@@ -6,10 +6,12 @@
  *   materials    each distinct one (within the last ASET_RECENT) once
  *   lights
  *
- * Coordinates are kept times scene->scale, a power of two: 1 for any ordinary scene, else such that the largest is between 2^-24
- * and 2^48 (in double 2^-192 and 2^384), where products of two differences of coordinates neither overflow nor lose bits to
+ * Coordinates are kept times scene->scale, a power of two: 1 for any ordinary scene, else such that its box's largest is between
+ * 2^-24 and 2^48 (in double 2^-192 and 2^384), where products of two differences of coordinates neither overflow nor lose bits to
  * underflow, nor do the products of these and a length. So a scene multiplied by a power of two gives the same picture, bit for
- * bit. As objects come one by one, the scale is changed when the first one comes that is out of its range, twice at the most.
+ * bit. As objects come one by one, the scale is changed when the first one comes that is out of its range, twice at the most. Only
+ * what is taken counts, as in the counter, from which a flat picture takes its scale: so a polygon in progress keeps the caller's
+ * lengths until it is complete, and the scene's box is that of the caller's numbers, scaled.
  *
  * Invariant: counts never exceed limits, and an entity is counted only when it is complete; what an abandoned polygon wrote
  * lies behind the counted coordinates.
@@ -30,7 +32,8 @@
 #define SCALE_DOWN R(0x1p-576)
 #endif
 
-aset_real aset_scene_scale_for(aset_real largest) {
+aset_real aset_scene_scale_for(aset_vec3 low, aset_vec3 high) {
+    aset_real largest = real_max(vec_largest(low), vec_largest(high));
     if (largest >= SCALE_HIGH) {
         return SCALE_DOWN;
     }
@@ -51,26 +54,24 @@ static void scale_object(aset_scene *scene, uint32_t object, aset_real factor) {
     }
 }
 
-static void scale_outline(aset_scene *scene, aset_real factor);
-
-/* Makes the scene ready for a coordinate of this size, before it is stored. */
-static void make_range(aset_scene *scene, aset_real largest) {
-    if (!(largest > scene->largest)) {
-        return;
+/* Makes the scene's box and scale ready for one more object with this box in the caller's lengths, before it is stored. */
+static void make_room(aset_scene *scene, aset_vec3 low, aset_vec3 high) {
+    if (scene->counts.objects > 0) {
+        aset_real per_scale = 1 / scene->scale;
+        low = vec_min(vec_scale(scene->low, per_scale), low);
+        high = vec_max(vec_scale(scene->high, per_scale), high);
     }
-    aset_real wanted = aset_scene_scale_for(largest);
-    scene->largest = largest;
+    aset_real wanted = aset_scene_scale_for(low, high);
     while (scene->scale != wanted) {
         aset_real factor = wanted < scene->scale ? SCALE_DOWN : 1 / SCALE_DOWN;
         for (uint32_t i = 0; i < scene->counts.objects; i++) {
             scale_object(scene, i, factor);
         }
-        scale_outline(scene, factor);
-        scene->low = vec_scale(scene->low, factor);
-        scene->high = vec_scale(scene->high, factor);
-        scene->margin = aset_object_margin(scene->low, scene->high);
         scene->scale *= factor;
     }
+    scene->low = scene_point(scene, low);
+    scene->high = scene_point(scene, high);
+    scene->margin = aset_object_margin(scene->low, scene->high);
 }
 
 static aset_status take_background(void *context, const aset_colour *colour) {
@@ -149,16 +150,10 @@ static aset_status store_material(aset_scene *scene) {
 
 static void finish_object(aset_scene *scene, unsigned kind, uint64_t coordinates) {
     aset_object *object = scene->objects + scene->counts.objects;
-    aset_vec3 low, high;
     object->first = (uint32_t)scene->counts.coordinates;
     object->kind_material = scene->recent.current << KIND_BITS | kind;
     scene->counts.coordinates += coordinates;
     scene->counts.objects++;
-    aset_object_own_bounds(scene, scene->counts.objects - 1, &low, &high);
-    bool is_first = scene->counts.objects == 1;
-    scene->low = is_first ? low : vec_min(scene->low, low);
-    scene->high = is_first ? high : vec_max(scene->high, high);
-    scene->margin = aset_object_margin(scene->low, scene->high);
 }
 
 #endif
@@ -179,12 +174,13 @@ static aset_real *outline_points(const aset_scene *scene) {
     return scene->coordinates + scene->counts.coordinates + ASET_OUTLINE_HEAD(scene->outline.n_announced);
 }
 
-static void scale_outline(aset_scene *scene, aset_real factor) {
+/* A complete polygon's points, from the caller's lengths to the scene's own. */
+static void scale_outline(const aset_scene *scene) {
     aset_real *at = outline_points(scene);
-    for (uint32_t i = 0; scene->outline.open && i < scene->outline.n_given; i++, at += outline_stride(&scene->outline)) {
-        at[0] *= factor;
-        at[1] *= factor;
-        at[2] *= factor;
+    for (uint32_t i = 0; scene->scale != 1 && i < scene->outline.n_given; i++, at += outline_stride(&scene->outline)) {
+        at[0] *= scene->scale;
+        at[1] *= scene->scale;
+        at[2] *= scene->scale;
     }
 }
 
@@ -206,14 +202,10 @@ static aset_status take_polygon_point(void *context, const aset_vec3 *point, con
     if (status != ASET_OK) {
         return status;
     }
-    outline->n_given = index; /* only the points before it are to be scaled */
-    make_range(scene, vec_largest(*point));
-    outline->n_given++;
-    aset_vec3 p = scene_point(scene, *point);
     aset_real *at = outline_points(scene) + (size_t)index * outline_stride(outline);
-    at[0] = p.x;
-    at[1] = p.y;
-    at[2] = p.z;
+    at[0] = point->x;
+    at[1] = point->y;
+    at[2] = point->z;
     if (normal != NULL) {
         aset_vec3 unit = aset_vec_unit(*normal);
         at[3] = unit.x;
@@ -233,17 +225,13 @@ static aset_status take_polygon_end(void *context) {
     if (status != ASET_OK) {
         return status;
     }
+    make_room(scene, outline->low, outline->high);
+    scale_outline(scene);
     aset_polygon_finish(scene->coordinates + scene->counts.coordinates, (uint32_t)outline_coordinates(outline),
                         outline_stride(outline), scene_point(scene, outline->low), scene_point(scene, outline->high));
     finish_object(scene, outline->with_normals ? KIND_PATCH : KIND_POLYGON, outline_coordinates(outline));
     *(outline->with_normals ? &scene->counts.patches : &scene->counts.polygons) += 1;
     return ASET_OK;
-}
-
-#else
-
-static void scale_outline(aset_scene *scene, aset_real factor) {
-    (void)scene, (void)factor;
 }
 
 #endif
@@ -254,6 +242,13 @@ static aset_status prepare_whole(aset_scene *scene, uint64_t coordinates) {
     scene->outline.open = false;
     aset_status status = check_room(scene, coordinates);
     return status == ASET_OK ? store_material(scene) : status;
+}
+
+static void store_scaled(const aset_scene *scene, const aset_real *given, uint32_t n) {
+    aset_real *at = scene->coordinates + scene->counts.coordinates;
+    for (uint32_t i = 0; i < n; i++) {
+        at[i] = given[i] * scene->scale;
+    }
 }
 #endif
 
@@ -267,13 +262,11 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
     if (status != ASET_OK) {
         return status;
     }
-    aset_real *at = scene->coordinates + scene->counts.coordinates;
-    make_range(scene, real_max(vec_largest(*centre), real_abs(radius)));
-    aset_vec3 c = scene_point(scene, *centre);
-    at[0] = c.x;
-    at[1] = c.y;
-    at[2] = c.z;
-    at[3] = radius * scene->scale;
+    const aset_real given[ASET_COORDINATES_SPHERE] = {centre->x, centre->y, centre->z, radius};
+    aset_vec3 low, high;
+    aset_sphere_bounds(given, &low, &high);
+    make_room(scene, low, high);
+    store_scaled(scene, given, ASET_COORDINATES_SPHERE);
     finish_object(scene, KIND_SPHERE, ASET_COORDINATES_SPHERE);
     scene->counts.spheres++;
     return ASET_OK;
@@ -291,12 +284,12 @@ static aset_status take_cone(void *context, const aset_vec3 *base, aset_real bas
     if (status != ASET_OK) {
         return status;
     }
-    aset_real wider = real_max(real_abs(base_radius), real_abs(apex_radius));
-    make_range(scene, real_max(wider, real_max(vec_largest(*base), vec_largest(*apex))));
-    aset_vec3 b = scene_point(scene, *base), a = scene_point(scene, *apex);
-    const aset_real at[ASET_COORDINATES_CONE] = {b.x, b.y, b.z, base_radius * scene->scale,
-                                                 a.x, a.y, a.z, apex_radius * scene->scale};
-    memcpy(scene->coordinates + scene->counts.coordinates, at, sizeof at);
+    const aset_real given[ASET_COORDINATES_CONE] = {base->x, base->y, base->z, base_radius,
+                                                    apex->x, apex->y, apex->z, apex_radius};
+    aset_vec3 low, high;
+    aset_cone_bounds(given, &low, &high);
+    make_room(scene, low, high);
+    store_scaled(scene, given, ASET_COORDINATES_CONE);
     finish_object(scene, KIND_CONE, ASET_COORDINATES_CONE);
     scene->counts.cones++;
     return ASET_OK;

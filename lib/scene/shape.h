@@ -65,8 +65,11 @@ static inline aset_vec3 scene_point(const aset_scene *scene, aset_vec3 point) {
     return vec_scale(point, scene->scale);
 }
 
-/* A scene is kept times a power of two that brings its largest coordinate into a range where nothing leaves that of numbers. */
-aset_real aset_scene_scale_for(aset_real largest);
+/*
+ * A scene is kept times a power of two that brings its box into a range where nothing leaves that of numbers. The box is the
+ * caller's: that of all objects' bounds, each taken from the numbers that the caller gave.
+ */
+aset_real aset_scene_scale_for(aset_vec3 low, aset_vec3 high);
 
 /*
  * The smallest t > 0 at which the ray meets a side that is seen, REAL_INFINITY if there is none. Boxes are margin-free.
