@@ -412,6 +412,32 @@ static void test_scale__precision_is_asked_of_the_whole_scene(void **state) {
 #endif
 }
 
+/* A surface nearer to the origin than the least number there is: t has none, but is above 0, as a hit's is. */
+static void test_scale__a_t_that_has_no_number(void **state) {
+    (void)state;
+#if ASET_WITH_POLYGONS
+    const aset_real d = REAL_DENORMAL, n = R(0x1p20);
+    const aset_vec3 ramp[4] = {{0, 0, 0}, {n * d, 0, d}, {n * d, n * d, d}, {0, n * d, 0}};
+    for (size_t k = 0; k < COUNT_OF(methods); k++) {
+        model m;
+        stage s;
+        aset_space space;
+        aset_hit hit;
+        bool found;
+        aset_ray ray = {{n / 8 * d, n / 2 * d, 0}, {0, 0, 1}, REAL_INFINITY};
+        model_start(&m);
+        model_polygon(&m, ramp, NULL, 4);
+        stage_open_model(&s, &m, 1 << 16);
+        assert_int_equal(aset_space_build(&space, &s.scene, methods[k], NULL, &s.arena), ASET_OK);
+        const aset_tracer tracer = stage_tracer(&s, &space);
+        assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, false, NULL), ASET_OK);
+        assert_true(found && hit.t > 0 && hit.t <= d);
+        stage_close(&s);
+        model_free(&m);
+    }
+#endif
+}
+
 /* --- scenes whose objects are of different sizes: the scale changes as they come --- */
 
 static void add_around(model *m, random_state *r, double size) {
@@ -457,6 +483,7 @@ int main(void) {
         cmocka_unit_test(test_scale__powers_of_ten_hit_the_same),
         cmocka_unit_test(test_scale__moved_scenes_err_until_they_are_refused),
         cmocka_unit_test(test_scale__precision_is_asked_of_the_whole_scene),
+        cmocka_unit_test(test_scale__a_t_that_has_no_number),
         cmocka_unit_test(test_scale__order_of_sizes_does_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -47,10 +47,10 @@ struct aset_answers {
 
 extern const struct aset_answers aset_exact_answers;
 
-/* Lengths of a hit from the scene's own to the caller's. */
+/* Lengths of a hit from the scene's own to the caller's, where a tiny scene's t may have no number, but stays above 0. */
 static inline void answers_to_caller(query_hit *hit, const aset_scene *scene) {
     aset_real per_scale = 1 / scene->scale;
-    hit->t *= per_scale;
+    hit->t = real_max(hit->t * per_scale, REAL_DENORMAL);
     hit->t_near *= per_scale;
     hit->near = vec_scale(hit->near, per_scale);
 }
