@@ -6,7 +6,7 @@ set -u
 seconds=${1:-60} dir=${2:-build/fuzz}
 shift 2 2>/dev/null || set --
 here=$(cd "$(dirname "$0")" && pwd) root=$(cd "$(dirname "$0")/.." && pwd)
-flags="-std=c99 -Wall -Wextra -pedantic -Wconversion -Wshadow -Wmissing-prototypes -ffp-contract=off -O1 -g ${FUZZ_FLAGS:-}"
+flags="-std=c99 -Wall -Wextra -pedantic -Wconversion -Wshadow -Wmissing-prototypes -ffp-contract=off -O2 -g ${FUZZ_FLAGS:-}"
 flags="$flags -I$root/include -I$root/lib -fno-sanitize-recover=all -fsanitize=address,undefined,float-cast-overflow"
 names=${*:-$(cd "$here/fuzz" && ls fuzz_*.c | sed 's/\.c$//')}
 cc=${CC:-cc} main=$here/fuzz/main.c fuzzer=no
@@ -42,19 +42,20 @@ done
 
 # One fuzzer; its last line says how many inputs it ran.
 run() {
-    local name=$1 seeds=$here/fuzz/corpus/$1 status=0
+    local name=$1 seeds=$here/fuzz/corpus/$1 status=0 longest
     mkdir -p "$dir/corpus/$name"
     if [ ! -d "$seeds" ]; then
         echo "$name: no seeds in $seeds"
         return 1
     fi
-    if ! "$dir/$name" $(find "$seeds" -type f) >"$dir/$name.seeds.log" 2>&1; then
+    if ! ASET_FUZZ_ALL=1 "$dir/$name" $(find "$seeds" -type f) >"$dir/$name.seeds.log" 2>&1; then
         echo "$name: a seed or kept crash fails: $dir/$name.seeds.log"
         return 1
     fi
     echo "$name: $(find "$seeds" -type f | wc -l) seeds pass"
     [ $fuzzer = yes ] && [ "$seconds" -gt 0 ] || return 0
-    "$dir/$name" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=1024 -max_len=4096 -print_final_stats=1 \
+    case $name in fuzz_scene | fuzz_baker) longest=1024 ;; *) longest=4096 ;; esac # 40 entities; a file
+    "$dir/$name" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=1024 -max_len="$longest" -entropic=0 -print_final_stats=1 \
         -artifact_prefix="$dir/$name-" "$dir/corpus/$name" "$seeds" >"$dir/$name.log" 2>&1 || status=1
     echo "$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$name.log") executions in $seconds s"
     if [ $status -ne 0 ]; then

@@ -110,8 +110,11 @@ static inline void check_hit(const aset_tracer *tracer, const aset_hit *hit, con
 #if ASET_WITH_DRAFTS
 
 /* Rays from the corners of a cube around the draft's box and from its middle, in fixed directions. */
-static inline void shoot_draft(const aset_tracer *tracer, const aset_draft *d) {
+static inline void shoot_draft(const aset_tracer *tracer, const aset_draft *d, uint32_t choice) {
     for (uint32_t i = 0; i < 16; i++) {
+        if (!chosen(choice, 2, i % 2)) {
+            continue;
+        }
         aset_ray ray;
         aset_hit hit;
         bool found = false, any = false;
@@ -136,7 +139,7 @@ static inline void shoot_draft(const aset_tracer *tracer, const aset_draft *d) {
     }
 }
 
-static inline void draw_draft(const aset_draft *draft) {
+static inline void draw_draft(const aset_draft *draft, uint32_t choice) {
     aset_vec3 low = {draft->low[0], draft->low[1], draft->low[2]}, high = low;
     high.x += draft->size[0] * 4 * (aset_real)draft->n[0];
     high.y += draft->size[1] * 4 * (aset_real)draft->n[1];
@@ -148,13 +151,18 @@ static inline void draw_draft(const aset_draft *draft) {
     tracer.draft = draft;
     tracer.approx_kinds = ASET_ALL_KINDS;
     tracer.depth = DRAW_DEPTH;
-    for (int sides = 0; sides < 2; sides++) {
+    for (uint32_t sides = 0; sides < 2; sides++) {
+        if (!chosen(choice, 2, sides)) {
+            continue;
+        }
         tracer.draft_sides = sides == 1;
-        draw_view(&tracer, &view);
-        if (draft->stage.has_view) {
+        if (!draft->stage.has_view || chosen(choice / 2, 2, 0)) {
+            draw_view(&tracer, &view);
+        }
+        if (draft->stage.has_view && chosen(choice / 2, 2, 1)) {
             draw_view(&tracer, &draft->stage.view);
         }
-        shoot_draft(&tracer, draft);
+        shoot_draft(&tracer, draft, choice / 4);
     }
 }
 

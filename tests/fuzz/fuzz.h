@@ -24,6 +24,33 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
         }                                                                                                              \
     } while (0)
 
+/*
+ * --- what of it all ---
+ *
+ * A fuzzer must run often, so of what is alike (rays, methods, sides, pictures) an input gets only a part, and only one in a few gets
+ * the large sizes. Which, its check sum says, or a byte of it where its offspring is to stay with the same. A kept input gets
+ * everything: fuzz.sh sets ASET_FUZZ_ALL for these.
+ */
+
+static inline bool fuzz_all(void) {
+    static int all = -1;
+    all = all < 0 ? getenv("ASET_FUZZ_ALL") != NULL : all;
+    return all == 1;
+}
+
+static inline uint32_t fuzz_choice(const uint8_t *data, size_t size) {
+    uint32_t sum = 2166136261u;
+    for (size_t i = 0; i < size; i++) {
+        sum = (sum ^ data[i]) * 16777619u;
+    }
+    return sum ^ sum >> 15;
+}
+
+/* Is it the turn of number `which` of so many? */
+static inline bool chosen(uint32_t choice, uint32_t of, uint32_t which) {
+    return fuzz_all() || choice % of == which;
+}
+
 /* --- blocks --- */
 
 static inline aset_arena open_arena(size_t size) {
@@ -215,6 +242,7 @@ typedef struct entities {
     bytes from;
     number_style style;
     bool tame; /* no amount of a material or a light is above 255 */
+    uint32_t spheres; /* so many at the most are given to the sink */
 } entities;
 
 static inline aset_real take_amount(entities *e) {
@@ -296,7 +324,12 @@ static inline aset_status put_object(entities *e, const aset_sink *sink, uint32_
 #if ASET_WITH_SPHERES
     case 2: {
         aset_vec3 centre = take_vec(&e->from, e->style);
-        return sink->sphere(sink->context, &centre, take_real(&e->from, e->style));
+        aset_real radius = take_real(&e->from, e->style);
+        if (e->spheres == 0) {
+            return ASET_ERR_LIMIT;
+        }
+        e->spheres--;
+        return sink->sphere(sink->context, &centre, radius);
     }
 #endif
 #if ASET_WITH_CONES
@@ -333,9 +366,9 @@ static inline aset_status put_entity(entities *e, const aset_sink *sink, uint32_
  * (Not of why it refused: a polygon that announces more points than a scene can hold is NOMEM there.) The
  * first byte says how numbers look; a plain material comes before the rest unless it says otherwise.
  */
-static inline uint32_t put_entities(bytes from, const aset_sink *sink, uint32_t most, bool *tame) {
+static inline uint32_t put_entities_with(bytes from, const aset_sink *sink, uint32_t most, uint32_t spheres, bool *tame) {
     uint32_t how = take_byte(&from), taken = 1;
-    entities e = {from, (number_style)(how % 3), (how & 64u) == 0};
+    entities e = {from, (number_style)(how % 3), (how & 64u) == 0, spheres};
     *tame = e.tame;
     if ((how & 128u) == 0) {
         aset_material m;
@@ -348,6 +381,10 @@ static inline uint32_t put_entities(bytes from, const aset_sink *sink, uint32_t 
         taken = taken * 31 + (put_entity(&e, sink, what) == ASET_OK);
     }
     return taken;
+}
+
+static inline uint32_t put_entities(bytes from, const aset_sink *sink, uint32_t most, bool *tame) {
+    return put_entities_with(from, sink, most, UINT32_MAX, tame);
 }
 
 #endif

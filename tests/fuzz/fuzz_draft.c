@@ -33,7 +33,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     require(status == ASET_OK || arena.used == 0);
     require((status == ASET_ERR_SYNTAX) == (why != NULL));
     if (status == ASET_OK) {
-        draw_draft(&draft);
+        draw_draft(&draft, fuzz_choice(data, size));
     }
     close_arena(&arena);
     free(words);

@@ -1,11 +1,13 @@
 /*
  * fuzz_scene.c - garbage geometry through the scene builder, every method and the tracer. First three bytes: the arena of
- * the spaces, divisions, where rays come from; then entities as fuzz.h reads them; rays are made of the last bytes.
+ * the spaces, divisions, where rays come from and which method is asked beside brute force; then entities as fuzz.h reads them; rays
+ * are made of the last bytes.
  */
 #include "draw.h"
 
 #define HEAD 3u
 #define RAYS 64u
+#define RAYS_FEW 16u /* as many as there are sorts of them */
 #define ENTITIES_MAX 40u
 
 typedef struct answer {
@@ -48,9 +50,14 @@ static aset_ray make_ray(const aset_scene *scene, uint32_t number, uint32_t *sta
     return ray;
 }
 
+/* The first ones in most runs. */
+static uint32_t n_rays(uint32_t choice) {
+    return chosen(choice, 8, 0) ? RAYS : RAYS_FEW;
+}
+
 /* Against brute force: the same object at the same t, for every method. */
-static void shoot(const aset_tracer *tracer, const aset_ray *rays, answer *answers, bool is_brute) {
-    for (uint32_t i = 0; i < RAYS; i++) {
+static void shoot(const aset_tracer *tracer, const aset_ray *rays, uint32_t n, answer *answers, bool is_brute) {
+    for (uint32_t i = 0; i < n; i++) {
         answer a;
         bool any = false;
         memset(&a, 0, sizeof a);
@@ -71,11 +78,11 @@ static void shoot(const aset_tracer *tracer, const aset_ray *rays, answer *answe
     }
 }
 
-static void check_colours(const aset_tracer *tracer, const aset_ray *rays, bool tame) {
+static void check_colours(const aset_tracer *tracer, const aset_ray *rays, uint32_t n, bool tame) {
     aset_arena arena = open_arena(ASET_BYTES_SCRATCH(DRAW_DEPTH));
     aset_scratch scratch;
     require(aset_scratch_init(&scratch, DRAW_DEPTH, &arena) == ASET_OK);
-    for (uint32_t i = 0; i < RAYS; i += 9) {
+    for (uint32_t i = 0; i < n; i += 9) {
         aset_colour c = {0, 0, 0};
         aset_status status = aset_ray_colour(&c, tracer, rays + i, &scratch, NULL);
         require(status == ASET_OK || status == ASET_ERR_ARGUMENT);
@@ -86,7 +93,7 @@ static void check_colours(const aset_tracer *tracer, const aset_ray *rays, bool 
 
 #if ASET_WITH_APPROXIMATION
 /* The same from the scene as a stream, in as much memory as it asks for and not a byte more: the same answers. */
-static void stream(const aset_tracer *whole, const aset_ray *rays) {
+static void stream(const aset_tracer *whole, const aset_ray *rays, uint32_t n) {
     aset_counter counter;
     aset_flat *flat = malloc(sizeof *flat);
     aset_scene stage;
@@ -125,7 +132,7 @@ static void stream(const aset_tracer *whole, const aset_ray *rays) {
     streamed.space = &space;
     streamed.summary = &summary;
     require(summary.merged == whole->summary->merged && summary.n_textures == whole->summary->n_textures);
-    for (uint32_t i = 0; i < RAYS; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         aset_hit a, b;
         bool found_a = false, found_b = false;
         status = aset_closest_hit(&found_a, &a, whole, rays + i, true, NULL);
@@ -138,7 +145,8 @@ static void stream(const aset_tracer *whole, const aset_ray *rays) {
 }
 #endif
 
-static void approximate(aset_tracer *tracer, const aset_space *space, const aset_ray *rays, bool tame, aset_arena *arena) {
+static void approximate(aset_tracer *tracer, const aset_space *space, const aset_ray *rays, uint32_t n, bool tame,
+                        aset_arena *arena) {
 #if ASET_WITH_APPROXIMATION
     aset_summary summary;
     aset_mark mark = aset_arena_mark(arena);
@@ -149,7 +157,7 @@ static void approximate(aset_tracer *tracer, const aset_space *space, const aset
     }
     tracer->summary = &summary;
     tracer->approx_kinds = ASET_ALL_KINDS;
-    for (uint32_t i = 0; i < RAYS; i += 3) {
+    for (uint32_t i = 0; i < n; i += 3) {
         aset_hit hit;
         bool found = false, any = false;
         status = aset_closest_hit(&found, &hit, tracer, rays + i, true, NULL);
@@ -160,15 +168,15 @@ static void approximate(aset_tracer *tracer, const aset_space *space, const aset
             require(hit.object == ASET_NO_OBJECT && hit.material != NULL);
         }
     }
-    check_colours(tracer, rays, tame);
+    check_colours(tracer, rays, n, tame);
     if (space->method == &aset_mset || space->method == &aset_grid) {
-        stream(tracer, rays);
+        stream(tracer, rays, n);
     }
     tracer->summary = NULL;
     tracer->approx_kinds = 0;
     aset_arena_release(arena, &mark);
 #else
-    (void)tracer, (void)space, (void)rays, (void)tame, (void)arena;
+    (void)tracer, (void)space, (void)rays, (void)n, (void)tame, (void)arena;
 #endif
 }
 
@@ -183,18 +191,21 @@ static aset_space_options options_of(uint32_t choice) {
     return options;
 }
 
-static void trace_all(const aset_scene *scene, const uint8_t *head, bytes last, bool tame) {
+static void trace_all(const aset_scene *scene, const uint8_t *head, bytes last, uint32_t choice, bool tame) {
     static const aset_method *const methods[] = {&aset_brute, &aset_set,  &aset_mset,  &aset_grid,
                                                  &aset_octree, &aset_arts, &aset_excell};
     aset_ray rays[RAYS];
     answer answers[RAYS];
     aset_space_options options = options_of(head[1]);
-    uint32_t state = head[2];
+    uint32_t state = head[2], n = n_rays(choice);
     memset(answers, 0, sizeof answers);
     for (uint32_t i = 0; i < RAYS; i++) {
         rays[i] = make_ray(scene, i, &state, &last);
     }
     for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
+        if (m > 0 && !chosen(head[2], 6, (uint32_t)m - 1)) {
+            continue;
+        }
         aset_arena arena = open_arena(head[0] >= 64 || m == 0 ? 1 << 16 : (size_t)head[0] * 128);
         aset_space space;
         aset_space_size size;
@@ -209,10 +220,12 @@ static void trace_all(const aset_scene *scene, const uint8_t *head, bytes last, 
             tracer.scene = scene;
             tracer.space = &space;
             tracer.depth = DRAW_DEPTH;
-            shoot(&tracer, rays, answers, m == 0);
-            approximate(&tracer, &space, rays, tame, &arena);
-            check_colours(&tracer, rays, tame);
-            if (scene->has_view && m == head[2] % 7u) { /* a picture costs as much as all the rest */
+            shoot(&tracer, rays, n, answers, m == 0);
+            if (m > 0 || chosen(choice / 8, 8, 0)) {
+                approximate(&tracer, &space, rays, n, tame, &arena);
+            }
+            check_colours(&tracer, rays, n, tame);
+            if (scene->has_view && chosen(choice / 64, 8, 0)) { /* a picture costs as much as all the rest */
                 draw_view(&tracer, &scene->view);
             }
         }
@@ -240,7 +253,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     require_same_counts(&scene.counts, &counter.counts);
     require(built == counted);
     if (scene.counts.objects > 0) {
-        trace_all(&scene, data, last, tame);
+        trace_all(&scene, data, last, fuzz_choice(data, size), tame);
     }
     close_arena(&arena);
     return 0;
