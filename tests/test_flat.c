@@ -352,13 +352,13 @@ static aset_status emit_odd_sizes(const aset_sink *sink, const void *context) {
  */
 static void test_flat__sizes_at_the_ends_of_the_numbers(void **state) {
     (void)state;
-    static const aset_real units[] = {1, R(0.9), DENORMAL, 100 * DENORMAL, DENORMAL * R(1e6)};
-    static const aset_real edges[] = {EDGE_LOW, EDGE_HIGH, EDGE_LOW * R(1e-6), 1};
-    for (size_t i = 0; i < COUNT_OF(units) * COUNT_OF(edges) * 6; i++) {
-        aset_real unit = units[i % COUNT_OF(units)], edge = edges[i / COUNT_OF(units) % COUNT_OF(edges)];
-        size_t how = i / COUNT_OF(units) / COUNT_OF(edges);
-        static const aset_real refused[] = {0, 1, R(0x1p80)};
-        odd_sizes o = {unit >= R(0.9) ? unit * edge : unit, refused[how % 3], how >= 3, R(0.1) * (aset_real)(i % 7)};
+    static const aset_real refused[] = {0, 1, R(0x1p80)};
+    static const aset_real units[] = {1,           EDGE_LOW,           EDGE_LOW * R(0.9),    EDGE_LOW * R(1e-6),
+                                      EDGE_HIGH,   EDGE_HIGH * R(0.9), DENORMAL,             DENORMAL * R(1.1),
+                                      DENORMAL * 3, DENORMAL * 100,    DENORMAL * R(1.0e6)};
+    for (size_t i = 0; i < COUNT_OF(units) * 6; i++) {
+        size_t how = i / COUNT_OF(units);
+        odd_sizes o = {units[i % COUNT_OF(units)], refused[how % 3], how >= 3, R(0.1) * (aset_real)(i % 7)};
         source from = {emit_odd_sizes, &o};
         const aset_method *method = methods[i % 2];
         aset_space_options options = divisions_of(19, 29, 36);
