@@ -121,7 +121,7 @@ $(BUILD)/tests/bench: tests/bench.c tests/bench_common.h $(ARCHIVES)
 $(BUILD)/tests/bench_robust: tests/bench_robust.c tests/bench_common.h $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) -Dobject_nearest=robust_object_nearest -Dprobe_make=robust_probe_make \
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) -Daset_object_nearest=robust_object_nearest -Daset_probe_make=robust_probe_make \
 	  -c lib/scene/object.c -o $@_object.o
 	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) -o $@ $< $@_object.o $(PROCEDURAL_A) $(CORE_A) -lm
 

@@ -271,6 +271,39 @@ static double on_cone(double r0, double r1, bool one_sided, aset_vec3 origin, as
     return only_hit(&m, one_sided, origin, direction);
 }
 
+/* Up to 10^5 times as long as wide: hit by no ray that passes the axis by more than the larger radius, however far it is from there. */
+static void test_shape__needles_are_not_hit_from_beside(void **state) {
+    (void)state;
+    uint32_t n_met = 0, n_passed = 0;
+    for (uint64_t i = 0; i < 20000; i++) {
+        random_state r = random_start(seed_of(7000 + i));
+        double radius = pow(10, -random_between(&r, 1, 5)), other = radius * random_between(&r, 0.5, 1);
+        aset_vec3 base = random_in_cube(&r, 1), apex = random_in_cube(&r, 1), origin = random_in_cube(&r, 3);
+        dvec axis = dvec_sub(dvec_of(apex), dvec_of(base)), aside = dvec_unit(dvec_cross(axis, dvec_of(random_direction(&r))));
+        dvec target = dvec_along(dvec_along(dvec_of(base), random_between(&r, 0.1, 0.9), axis), radius * random_between(&r, 0, 8), aside);
+        aset_vec3 direction = dvec_real(dvec_unit(dvec_sub(target, dvec_of(origin))));
+        dvec f = dvec_sub(dvec_of(origin), dvec_of(base)), across = dvec_cross(dvec_of(direction), axis);
+        double length = dvec_length(axis), n = dvec_length(across), gap = fabs(dvec_dot(across, f)) / n;
+        double nearest = dvec_dot(dvec_cross(dvec_of(direction), f), across) / (n * n); /* a share of the axis */
+        double rounding = 80 * (double)REAL_UNIT * (dvec_length(f) + length);
+        if (length < 0.5 || n < 0.5 * length || dvec_length(f) < 1.5) {
+            continue;
+        }
+        model m;
+        model_start(&m);
+        model_cone(&m, base, radius, apex, other);
+        double t = only_hit(&m, false, origin, direction);
+        if (gap > 1.05 * radius + rounding) {
+            check(t < 0, SEED ": a needle of radius %g, passed by %g, is hit", r.seed, radius, gap);
+            n_passed++;
+        } else if (radius > 0.003 && fabs(nearest - 0.5) < 0.1 && gap + rounding < 0.9 * other) { /* not by its ends */
+            check(t > 0, SEED ": a cone of radius %g, passed by %g, is missed", r.seed, other, gap);
+            n_met++;
+        }
+    }
+    assert_true(n_met > 100 && n_passed > 2000);
+}
+
 static void test_shape__sides_and_ends_of_cones(void **state) {
     (void)state;
     aset_vec3 right = real3(1, 0, 0), left = real3(-1, 0, 0), up = real3(0, 0, 1), half = real3(0, 0, 2);
@@ -625,6 +658,7 @@ int main(void) {
         cmocka_unit_test(test_shape__sides_of_spheres),
 #endif
 #if ASET_WITH_CONES
+        cmocka_unit_test(test_shape__needles_are_not_hit_from_beside),
         cmocka_unit_test(test_shape__sides_and_ends_of_cones),
 #endif
 #if ASET_WITH_POLYGONS

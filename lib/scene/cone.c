@@ -27,6 +27,31 @@ static cone cone_of(const aset_real *at) {
     return c;
 }
 
+/* A disc of radius r across the unit axis k reaches r sqrt(1 - k_a^2) along axis a: here for the radius 1. */
+static aset_vec3 disc_reach(aset_vec3 k) {
+    return vec(real_sqrt(k.y * k.y + k.z * k.z), real_sqrt(k.x * k.x + k.z * k.z), real_sqrt(k.x * k.x + k.y * k.y));
+}
+
+/*
+ * One of its components for a radius. A denormal product is rounded up: a scene of such lengths keeps them times a power of two, where
+ * the product has all its bits, and its box, which comes from the caller's numbers, must hold what is in it.
+ */
+static aset_real reach_of(aset_real reach, aset_real radius) {
+    aset_real product = reach * radius;
+    return product < REAL_LEAST && reach > 0 && radius > 0 ? product + REAL_DENORMAL : product;
+}
+
+static aset_vec3 reach_for(aset_vec3 reach, aset_real radius) {
+    return vec(reach_of(reach.x, radius), reach_of(reach.y, radius), reach_of(reach.z, radius));
+}
+
+static void bounds_of(const cone *c, const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
+    aset_vec3 apex = vec(at[4], at[5], at[6]);
+    aset_vec3 reach = disc_reach(c->axis), base_reach = reach_for(reach, c->radius), apex_reach = reach_for(reach, real_abs(at[7]));
+    *low = vec_min(vec_sub(c->base, base_reach), vec_sub(apex, apex_reach));
+    *high = vec_max(vec_add(c->base, base_reach), vec_add(apex, apex_reach));
+}
+
 /* Not normalised: from the axis outwards, tilted by the slope. */
 static aset_vec3 outward(const cone *c, aset_vec3 from_base) {
     aset_real height = vec_dot(from_base, c->axis);
@@ -71,21 +96,31 @@ static bool quadratic_roots(aset_real a, aset_real b, aset_real c, aset_real roo
     return true;
 }
 
+/* Fourth powers of lengths below this tell nothing. */
+#define FOURTH_LEAST R(1e-30)
+
 /*
- * Whether the line passes the sphere about the cone, as most do that are asked: no root is needed to tell. The sphere is larger by
- * far more than the rounding, 3 u of the distance |f|: (a + b)^2 <= (17 / 16) a^2 + 17 b^2.
+ * Whether the line passes the sphere about the cone, or its axis, by more than the larger radius, as most do that are asked: no root
+ * is needed to tell. Both radii are larger by far more than the rounding, 3 u of the distance |f|: (a + b)^2 <= (17 / 16) a^2 + 17 b^2.
+ * A line n away from the axis has |d x h| n = |(d x h) . f|, h being half the axis. The quadratic errs by far more where a cone
+ * is longer than some thousand radii: it would hit beside it.
  */
-static bool sphere_missed(const aset_real *at, const probe *ray) {
+static bool surely_missed(const aset_real *at, const probe *ray) {
+    const aset_real slack = 17 * (16 * REAL_UNIT) * (16 * REAL_UNIT);
     aset_vec3 base = vec(at[0], at[1], at[2]), apex = vec(at[4], at[5], at[6]), half = vec_scale(vec_sub(apex, base), R(0.5));
-    aset_vec3 d = probe_direction(ray), f = vec_sub(probe_origin(ray), vec_add(base, half));
-    aset_vec3 nearest = vec_along(f, -vec_dot(f, d), d);
-    aset_real wider = real_max(real_abs(at[3]), real_abs(at[7])), square = vec_dot(half, half) + wider * wider;
-    aset_real slack = 16 * REAL_UNIT;
-    return vec_dot(nearest, nearest) > R(17.0 / 16) * square + 17 * slack * slack * vec_dot(f, f);
+    aset_vec3 d = probe_direction(ray), f = vec_sub(vec_sub(probe_origin(ray), base), half); /* no sum of two large coordinates */
+    aset_vec3 nearest = vec_along(f, -vec_dot(f, d), d), across = vec_cross(d, half);
+    aset_real wider = real_max(real_abs(at[3]), real_abs(at[7])), radius2 = R(17.0 / 16) * (wider * wider);
+    aset_real half2 = vec_dot(half, half), rounding2 = slack * vec_dot(f, f);
+    if (vec_dot(nearest, nearest) > R(17.0 / 16) * half2 + radius2 + rounding2) {
+        return true;
+    }
+    aset_real past = vec_dot(across, nearest), bound = radius2 * vec_dot(across, across) + (rounding2 + slack * half2) * half2;
+    return past * past > bound && bound > FOURTH_LEAST;
 }
 
-aset_real aset_cone_nearest(const aset_real *at, const probe *ray, unsigned sides) {
-    if (sphere_missed(at, ray)) {
+aset_real aset_cone_nearest(const aset_real *at, const probe *ray, unsigned sides, aset_vec3 *low, aset_vec3 *high) {
+    if (surely_missed(at, ray)) {
         return REAL_INFINITY;
     }
     cone c = cone_of(at);
@@ -103,36 +138,16 @@ aset_real aset_cone_nearest(const aset_real *at, const probe *ray, unsigned side
     }
     for (int i = 0; i < 2; i++) {
         if (real_finite(roots[i]) && root_counts(&c, f, d, roots[i], shift, sides)) {
+            bounds_of(&c, at, low, high);
             return roots[i] + shift;
         }
     }
     return REAL_INFINITY;
 }
 
-/* A disc of radius r across the unit axis k reaches r sqrt(1 - k_a^2) along axis a: here for the radius 1. */
-static aset_vec3 disc_reach(aset_vec3 k) {
-    return vec(real_sqrt(k.y * k.y + k.z * k.z), real_sqrt(k.x * k.x + k.z * k.z), real_sqrt(k.x * k.x + k.y * k.y));
-}
-
-/*
- * One of its components for a radius. A denormal product is rounded up: a scene of such lengths keeps them times a power of two, where
- * the product has all its bits, and its box, which comes from the caller's numbers, must hold what is in it.
- */
-static aset_real reach_of(aset_real reach, aset_real radius) {
-    aset_real product = reach * radius;
-    return product < REAL_LEAST && reach > 0 && radius > 0 ? product + REAL_DENORMAL : product;
-}
-
-static aset_vec3 reach_for(aset_vec3 reach, aset_real radius) {
-    return vec(reach_of(reach.x, radius), reach_of(reach.y, radius), reach_of(reach.z, radius));
-}
-
 void aset_cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high) {
     cone c = cone_of(at);
-    aset_vec3 apex = vec(at[4], at[5], at[6]);
-    aset_vec3 reach = disc_reach(c.axis), base_reach = reach_for(reach, c.radius), apex_reach = reach_for(reach, real_abs(at[7]));
-    *low = vec_min(vec_sub(c.base, base_reach), vec_sub(apex, apex_reach));
-    *high = vec_max(vec_add(c.base, base_reach), vec_add(apex, apex_reach));
+    bounds_of(&c, at, low, high);
 }
 
 aset_vec3 aset_cone_normal(const aset_real *at, aset_vec3 point) {

@@ -48,24 +48,28 @@ bool aset_probe_box(const probe *ray, aset_vec3 low, aset_vec3 high, aset_real *
     return in <= out;
 }
 
-void aset_object_own_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high) {
-    shape s = shape_of(scene, object);
-    switch (s.kind) {
+static void shape_bounds(const shape *s, aset_vec3 *low, aset_vec3 *high) {
+    switch (s->kind) {
 #if ASET_WITH_POLYGONS
-    case KIND_POLYGON: aset_polygon_bounds(s.at, s.n, 3, low, high); return;
+    case KIND_POLYGON: aset_polygon_bounds(s->at, s->n, 3, low, high); return;
 #if ASET_WITH_PATCHES
-    case KIND_PATCH: aset_polygon_bounds(s.at, s.n, 6, low, high); return;
+    case KIND_PATCH: aset_polygon_bounds(s->at, s->n, 6, low, high); return;
 #endif
 #endif
 #if ASET_WITH_SPHERES
-    case KIND_SPHERE: aset_sphere_bounds(s.at, low, high); return;
+    case KIND_SPHERE: aset_sphere_bounds(s->at, low, high); return;
 #endif
 #if ASET_WITH_CONES
-    case KIND_CONE: aset_cone_bounds(s.at, low, high); return;
+    case KIND_CONE: aset_cone_bounds(s->at, low, high); return;
 #endif
     default: break;
     }
     *low = *high = vec(0, 0, 0); /* no other kind is ever stored */
+}
+
+void aset_object_own_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high) {
+    shape s = shape_of(scene, object);
+    shape_bounds(&s, low, high);
 }
 
 void aset_object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low, aset_vec3 *high) {
@@ -80,8 +84,10 @@ aset_real aset_object_margin(aset_vec3 low, aset_vec3 high) {
     return margin > 0 ? margin : R(1e-30); /* every object in the point 0: any width will do, but a width it must be */
 }
 
-static aset_real shape_nearest(const shape *s, const probe *ray, unsigned sides, aset_real margin, aset_real limit) {
-    (void)ray, (void)sides, (void)margin, (void)limit;
+/* Where there is a hit also the bounds of a cone. */
+static aset_real shape_nearest(const shape *s, const probe *ray, unsigned sides, aset_real margin, aset_real limit, aset_vec3 *low,
+                               aset_vec3 *high) {
+    (void)ray, (void)sides, (void)margin, (void)limit, (void)low, (void)high;
     switch (s->kind) {
 #if ASET_WITH_POLYGONS
     case KIND_POLYGON: return aset_polygon_nearest(s->at, s->n, 3, ray, sides, margin, limit);
@@ -93,7 +99,7 @@ static aset_real shape_nearest(const shape *s, const probe *ray, unsigned sides,
     case KIND_SPHERE: return aset_sphere_nearest(s->at, ray, sides);
 #endif
 #if ASET_WITH_CONES
-    case KIND_CONE: return aset_cone_nearest(s->at, ray, sides);
+    case KIND_CONE: return aset_cone_nearest(s->at, ray, sides, low, high);
 #endif
     default: return REAL_INFINITY;
     }
@@ -101,12 +107,14 @@ static aset_real shape_nearest(const shape *s, const probe *ray, unsigned sides,
 
 aset_real aset_object_nearest(const aset_scene *scene, uint32_t object, const probe *ray, aset_real limit) {
     shape s = shape_of(scene, object);
-    aset_real t = shape_nearest(&s, ray, s.material->one_sided ? SIDE_FRONT : SIDE_BOTH, scene->margin, limit);
+    aset_vec3 low, high, margin;
+    aset_real t = shape_nearest(&s, ray, s.material->one_sided ? SIDE_FRONT : SIDE_BOTH, scene->margin, limit, &low, &high);
     if (!(t < REAL_INFINITY)) {
         return REAL_INFINITY;
     }
-    aset_vec3 low, high, margin;
-    aset_object_own_bounds(scene, object, &low, &high);
+    if (s.kind != KIND_CONE) {
+        shape_bounds(&s, &low, &high);
+    }
     aset_real m = scene->margin, t_in, t_out;
     margin = vec(m, m, m);
     if (!aset_probe_box(ray, vec_sub(low, margin), vec_add(high, margin), &t_in, &t_out)) {

@@ -99,7 +99,8 @@ void aset_sphere_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high);
 aset_vec3 aset_sphere_normal(const aset_real *at, aset_vec3 point);
 #endif
 #if ASET_WITH_CONES
-aset_real aset_cone_nearest(const aset_real *at, const probe *ray, unsigned sides);
+/* Where there is a hit also aset_cone_bounds, of which half is known by then. */
+aset_real aset_cone_nearest(const aset_real *at, const probe *ray, unsigned sides, aset_vec3 *low, aset_vec3 *high);
 void aset_cone_bounds(const aset_real *at, aset_vec3 *low, aset_vec3 *high);
 aset_vec3 aset_cone_normal(const aset_real *at, aset_vec3 point);
 #endif
