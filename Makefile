@@ -134,17 +134,38 @@ $(BUILD)/tests/bench_peers $(BUILD)/tests/bench_drafts: $(BUILD)/tests/%: tests/
 	$(Q)if [ "$(EMBREE)" = yes ]; then with="-DBENCH_EMBREE=1" lib="-lembree3"; fi; \
 	  $(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $$with -o $@ $< $(PROCEDURAL_A) $(CORE_A) $$lib -lm
 
-test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset all check-layers check-link check-recursion check-readme check-man check-completion ## run the tests, in under two minutes
+# Every program and script at once over the cores, each one's output in one piece, the long ones first. What has not ended well
+# leaves its name in failed/. A make -jN is kept to.
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+LONG_FIRST := tool.sh plan.sh test_tight test_baker models.sh
+SCRIPTS := $(filter-out $(LONG_FIRST),faults.sh bake.sh determinism.sh)
+CHECKS := check-layers check-link check-recursion check-readme check-man check-completion check-manifests
+IN_TURN := $(LONG_FIRST) $(filter-out $(LONG_FIRST),$(TESTS)) $(SCRIPTS)
+FAILED := $(BUILD)/failed
+test: ## run the tests, in under two minutes
+	@rm -rf $(FAILED) && mkdir -p $(FAILED)
+	@$(MAKE) --no-print-directory -k -Otarget $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS)) test-each || touch $(FAILED)/make
+	@failed=$$(ls $(FAILED)); if [ -n "$$failed" ]; then echo "failed:" $$failed; exit 1; fi; echo "all tests passed"
 
-test: $(addprefix $(BUILD)/tests/,$(TESTS) convert determinism) $(BUILD)/aset all check-layers check-link check-recursion check-readme check-manifests ## run the tests, in under two minutes
-	@failed=; for t in $(TESTS); do echo "== $$t"; $(BUILD)/tests/$$t || failed="$$failed $$t"; done; \
-	  echo "== tool.sh"; bash tests/tool.sh $(BUILD)/aset || failed="$$failed tool.sh"; \
-	  echo "== faults.sh"; bash tests/faults.sh $(BUILD)/aset || failed="$$failed faults.sh"; \
-	  echo "== models.sh"; bash tests/models.sh $(BUILD)/aset $(BUILD)/tests/convert || failed="$$failed models.sh"; \
-	  echo "== bake.sh"; bash tests/bake.sh $(BUILD)/aset $(BUILD)/examples/flash "$(CC)" || failed="$$failed bake.sh"; \
-	  echo "== determinism.sh"; bash tests/determinism.sh quick $(BUILD)/tests/determinism || failed="$$failed determinism.sh"; \
-	  echo "== plan.sh"; CPPFLAGS="$(CPPFLAGS)" bash tests/plan.sh $(BUILD)/aset "$(CC)" || failed="$$failed plan.sh"; \
-	  if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi; echo "all tests passed"
+test-each: $(addprefix run-,$(IN_TURN) $(CHECKS)) all
+# $(call each,NAME,COMMAND)
+each = @echo "== $(1)"; touch $(FAILED)/$(1); $(2) && rm $(FAILED)/$(1)
+$(addprefix run-,$(TESTS)): run-%: $(BUILD)/tests/%
+	$(call each,$*,$<)
+run-tool.sh: $(BUILD)/aset
+	$(call each,tool.sh,bash tests/tool.sh $<)
+run-faults.sh: $(BUILD)/aset
+	$(call each,faults.sh,bash tests/faults.sh $<)
+run-models.sh: $(BUILD)/aset $(BUILD)/tests/convert
+	$(call each,models.sh,bash tests/models.sh $^)
+run-bake.sh: $(BUILD)/aset $(BUILD)/examples/flash
+	$(call each,bake.sh,bash tests/bake.sh $^ "$(CC)")
+run-determinism.sh: $(BUILD)/tests/determinism
+	$(call each,determinism.sh,bash tests/determinism.sh quick $<)
+run-plan.sh: $(BUILD)/aset
+	$(call each,plan.sh,CPPFLAGS="$(CPPFLAGS)" bash tests/plan.sh $< "$(CC)")
+$(addprefix run-,$(CHECKS)): run-%: %
+.PHONY: test-each $(addprefix run-,$(TESTS) $(LONG_FIRST) $(SCRIPTS) $(CHECKS))
 
 test-long: $(BUILD)/aset ## every method against brute force at 256 x 256 on the seven default scenes and snow (tens of minutes)
 	bash tests/long.sh $(BUILD)/aset $(BUILD)/long

@@ -3,7 +3,7 @@
  * methods, from outside and from inside, at random and exactly at vertices and at points of edges.
  *
  * ASET_LONG=1: ten million rays a place for MSET and grid, a million for the other methods, a hundred thousand for brute force;
- * else a hundredth of that.
+ * else a tenth of that, as in `make test`.
  */
 #include "support/support.h"
 
@@ -141,7 +141,7 @@ static void shoot(const bench *b, uint32_t n_rays, uint64_t seed, const char *pl
 }
 
 static void check_place(size_t place, size_t method) {
-    uint32_t n_rays = methods[method].rays / (long_run() ? 1 : 100) / LEVELS;
+    uint32_t n_rays = methods[method].rays / (long_run() ? 1 : 10) / LEVELS;
     for (int level = 0; level < LEVELS; level++) {
         bench b;
         b.radius = places[place].radius;
