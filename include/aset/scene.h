@@ -147,7 +147,7 @@ bool aset_scene_bounds(const aset_scene *scene, aset_vec3 *low, aset_vec3 *high)
 
 /*
  * Gives what is in the scene to a sink: a scene is a source, too. Directions are of unit length, as the scene keeps them, and
- * in a scene beyond 2^48 what is smaller than its own numbers can hold has no length.
+ * in a scene beyond 2^48 what is smaller than its own numbers can hold has lost bits, or all length.
  * ASET_OK, or the sink's first error.
  */
 aset_status aset_scene_emit(const aset_sink *sink, const aset_scene *scene);

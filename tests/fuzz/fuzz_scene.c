@@ -92,8 +92,21 @@ static void check_colours(const aset_tracer *tracer, const aset_ray *rays, uint3
 }
 
 #if ASET_WITH_APPROXIMATION
-/* The same from the scene as a stream, in as much memory as it asks for and not a byte more: the same answers. */
-static void stream(const aset_tracer *whole, const aset_ray *rays, uint32_t n) {
+/*
+ * What the scene was made of, once more: from itself, or as it was given where it is so huge that its tiniest parts have lost bits in
+ * it, or all length.
+ */
+static void give_again(const aset_sink *sink, const aset_scene *scene, bytes given) {
+    bool tame;
+    if (scene->scale < 1) {
+        (void)put_entities(given, sink, ENTITIES_MAX, &tame);
+    } else {
+        require(aset_scene_emit(sink, scene) == ASET_OK);
+    }
+}
+
+/* The same from a stream, in as much memory as it asks for and not a byte more: the same answers. */
+static void stream(const aset_tracer *whole, const aset_ray *rays, uint32_t n, bytes given) {
     aset_counter counter;
     aset_flat *flat = malloc(sizeof *flat);
     aset_scene stage;
@@ -104,12 +117,7 @@ static void stream(const aset_tracer *whole, const aset_ray *rays, uint32_t n) {
     aset_arena arena = open_arena(0);
     aset_sink sink = aset_counter_sink(&counter);
     require(flat != NULL);
-    if (aset_scene_emit(&sink, whole->scene) != ASET_OK) { /* what is tiny in a huge scene has no length in its numbers */
-        require(whole->scene->scale != 1);
-        close_arena(&arena);
-        free(flat);
-        return;
-    }
+    give_again(&sink, whole->scene, given);
     memset(&options, 0, sizeof options);
     memcpy(options.divisions, whole->space->slices.n, sizeof options.divisions);
     options.textures = whole->summary->capacity;
@@ -120,7 +128,7 @@ static void stream(const aset_tracer *whole, const aset_ray *rays, uint32_t n) {
         status = aset_flat_init(flat, &arena, &counter, whole->space->method, &options);
         while (status == ASET_OK && again) {
             sink = aset_flat_sink(flat);
-            require(aset_scene_emit(&sink, whole->scene) == ASET_OK);
+            give_again(&sink, whole->scene, given);
             status = aset_flat_pass(flat, &again);
         }
         require(status == ASET_OK || (status == ASET_ERR_NOMEM && arena.missing > 0 && arena.used == 0));
@@ -145,7 +153,7 @@ static void stream(const aset_tracer *whole, const aset_ray *rays, uint32_t n) {
 }
 #endif
 
-static void approximate(aset_tracer *tracer, const aset_space *space, const aset_ray *rays, uint32_t n, bool tame,
+static void approximate(aset_tracer *tracer, const aset_space *space, const aset_ray *rays, uint32_t n, bytes given, bool tame,
                         aset_arena *arena) {
 #if ASET_WITH_APPROXIMATION
     aset_summary summary;
@@ -170,13 +178,13 @@ static void approximate(aset_tracer *tracer, const aset_space *space, const aset
     }
     check_colours(tracer, rays, n, tame);
     if (space->method == &aset_mset || space->method == &aset_grid) {
-        stream(tracer, rays, n);
+        stream(tracer, rays, n, given);
     }
     tracer->summary = NULL;
     tracer->approx_kinds = 0;
     aset_arena_release(arena, &mark);
 #else
-    (void)tracer, (void)space, (void)rays, (void)n, (void)tame, (void)arena;
+    (void)tracer, (void)space, (void)rays, (void)n, (void)given, (void)tame, (void)arena;
 #endif
 }
 
@@ -191,7 +199,7 @@ static aset_space_options options_of(uint32_t choice) {
     return options;
 }
 
-static void trace_all(const aset_scene *scene, const uint8_t *head, bytes last, uint32_t choice, bool tame) {
+static void trace_all(const aset_scene *scene, const uint8_t *head, bytes given, bytes last, uint32_t choice, bool tame) {
     static const aset_method *const methods[] = {&aset_brute, &aset_set,  &aset_mset,  &aset_grid,
                                                  &aset_octree, &aset_arts, &aset_excell};
     aset_ray rays[RAYS];
@@ -222,7 +230,7 @@ static void trace_all(const aset_scene *scene, const uint8_t *head, bytes last, 
             tracer.depth = DRAW_DEPTH;
             shoot(&tracer, rays, n, answers, m == 0);
             if (m > 0 || chosen(choice / 8, 8, 0)) {
-                approximate(&tracer, &space, rays, n, tame, &arena);
+                approximate(&tracer, &space, rays, n, given, tame, &arena);
             }
             check_colours(&tracer, rays, n, tame);
             if (scene->has_view && chosen(choice / 64, 8, 0)) { /* a picture costs as much as all the rest */
@@ -253,7 +261,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     require_same_counts(&scene.counts, &counter.counts);
     require(built == counted);
     if (scene.counts.objects > 0) {
-        trace_all(&scene, data, last, fuzz_choice(data, size), tame);
+        trace_all(&scene, data, all, last, fuzz_choice(data, size), tame);
     }
     close_arena(&arena);
     return 0;
