@@ -43,12 +43,20 @@ sed -n 's/^[a-z].*[ *]\(aset_[a-z0-9_]*\)(.*/\1/p' include/aset/*.h | sort -u >"
 
 # CALLER CALLEE: who calls by pointer, and what stands behind it, as patterns of names (statics: FILE:NAME).
 cat >"$dir/pointers" <<'END'
-query_(closest|any) _go$
-_go$ query\.c:visit_
+aset_query_(closest|layers) (exact|summary|draft)_meet$
+aset_(query_any|any_hit) (exact|summary|draft)_any$
+aset_query_surface (exact|summary|draft)_surface$
+aset_query_clearance draft_query\.c:clearance$
+exact_(meet|any)|summary_meet (brute|set|mset|grid|octree|arts|excell)_go$
+_go$ exact\.c:visit_exact$|summary_query\.c:visit_
+render_rows beam\.c:(begin|draw_row)$
+shade_local reach\.c:last_before$
+flat\.c:take_ (scene\.c:take_|counter\.c:count_)
+flat_pass$ flat_pass\.c:end_
 summary\.c:pass _each_cell$|aset_leaves_each$
 _each_cell$|aset_cells_each|aset_leaves_each summary\.c:look_at_cell
 each_block cells\.c:(mark_|count_references|place_)
-halve (excell|tree)(\.c:excell)?_(inner|leaf)$|tree\.c:tree_(inner|leaf)
+halving_run (excell|tree)\.c:(excell|tree)_(inner|leaf)$
 space\.c:measure_with|aset_space_build (brute|set|mset|grid|octree|arts|excell|sides|tree)(\.c:[a-z]+)?_(measure|build)$
 baker\.c:take_|aset_draft_read_stage (scene\.c:take_|counter\.c:count_)
 aset_sink_polygon|stage\.c:|aset_stage_emit|aset_model_|nff\.c:|aset_load_nff (scene\.c:take_|counter\.c:count_|baker\.c:take_ENTITY$)
