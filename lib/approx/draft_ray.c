@@ -51,8 +51,8 @@ static inline bool meet(const way *w, const aset_real q[3], uint32_t number, ase
     aset_real rate = w->d[a] - slope_u * w->d[u] - slope_v * w->d[v];
     aset_real t = (height + slope_u * q[u] + slope_v * q[v] - q[a]) / rate;
     aset_real ha = q[a] + t * w->d[a], hu = q[u] + t * w->d[u], hv = q[v] + t * w->d[v];
-    bool in_voxel = (real_max(real_abs(hu), real_abs(hv)) <= 2 + BEYOND_SIDES) & (real_abs(ha) <= 2 + BEYOND_HEIGHT) &
-                    (t > t_min) & (t < w->t_max);
+    aset_real beside = real_max(real_abs(hu), real_abs(hv)), above = real_abs(ha);
+    bool in_voxel = (beside <= 2 + BEYOND_SIDES) & (above <= 2 + BEYOND_HEIGHT) & (t > t_min) & (t < w->t_max);
     if (!in_voxel) { /* rate may be 0: t is infinite then, or not a number, and nothing holds */
         return false;
     }
