@@ -49,14 +49,14 @@ aset_query_surface (exact|summary|draft)_surface$
 aset_query_clearance draft_query\.c:clearance$
 exact_(meet|any)|summary_meet (brute|set|mset|grid|octree|arts|excell)_go$
 _go$ exact\.c:visit_exact$|summary_query\.c:visit_
-render_rows beam\.c:(begin|draw_row)$
+render_rows beam\.c:(begin|draw_rows)$
 shade_local reach\.c:last_before$
 flat\.c:take_ (scene\.c:take_|counter\.c:count_)
 flat_pass$ flat_pass\.c:end_
 summary\.c:pass _each_cell$|aset_leaves_each$
 _each_cell$|aset_cells_each|aset_leaves_each summary\.c:look_at_cell
 each_block cells\.c:(mark_|count_references|place_)
-halving_run (excell|tree)\.c:(excell|tree)_(inner|leaf)$
+halving|leaves\.c:|aset_leaves_ (excell|tree)\.c:(excell|tree)_(inner|leaf)$
 space\.c:measure_with|aset_space_build (brute|set|mset|grid|octree|arts|excell|sides|tree)(\.c:[a-z]+)?_(measure|build)$
 baker\.c:take_|aset_draft_read_stage (scene\.c:take_|counter\.c:count_)
 aset_sink_polygon|stage\.c:|aset_stage_emit|aset_model_|nff\.c:|aset_load_nff (scene\.c:take_|counter\.c:count_|baker\.c:take_ENTITY$)
