@@ -820,6 +820,68 @@ static void test_draft__beams_follow_the_draft_and_the_view(void **state) {
     guarded_close(&memory);
 }
 
+/* What the beams are of, changed one thing at a time, and a picture in which two rows may not be drawn together. */
+static void test_draft__beams_are_of_one_picture(void **state) {
+    (void)state;
+    static unsigned char plain[(SIDE + 9) * (SIDE + 9) * 4], again[sizeof plain];
+    random_state r = random_start(seed_of(9));
+    guarded memory = guarded_open((size_t)1 << 18);
+    aset_arena arena;
+    aset_scratch scratch;
+    aset_beams beams;
+    model m;
+    drawn d;
+    model_of(&m, &r, 60, false);
+    bake(&d, &m, 12, 12, 12, true);
+    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+    assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
+    assert_int_equal(aset_beams_init(&beams, 4000, &arena), ASET_OK);
+    for (int i = 0; i < 24; i++) {
+        aset_tracer tracer = tracer_of(&d.draft);
+        aset_view view = any_view(&r, 0);
+        aset_picture picture;
+        memset(&picture, 0, sizeof picture);
+        picture.width = picture.height = SIDE;
+        picture.format = ASET_RGBA8888;
+        aset_real *numbers[6] = {&view.from.x, &view.from.y, &view.from.z, &view.at.x, &view.at.y, &view.angle_deg};
+        view.from = vec(R(9), R(-12), R(7)); /* the same each time but for one thing, and every second time but for none */
+        view.at = vec(0, 0, 0);
+        view.up = vec(0, 0, 1);
+        view.angle_deg = 35;
+        if (i % 2 == 1 && i / 2 < 6) {
+            *numbers[i / 2] += R(0.25);
+        }
+        view.up = i == 13 ? vec(1, 0, 0) : view.up;
+        view.height = i == 15 ? R(12) : 0;
+        picture.width += i == 17;
+        picture.height += i == 19;
+        tracer.samples = i == 21 ? 2 : 1;
+        tracer.spd_rules = i == 23;
+        uint32_t rows = picture.height + tracer.spd_rules;
+        picture.stride = 4 * (size_t)(picture.width + tracer.spd_rules);
+        memset(plain, 0, sizeof plain);
+        memset(again, 0, sizeof again);
+        picture.pixels = plain;
+        scratch.beams = NULL;
+        assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, rows, &scratch, NULL), ASET_OK);
+        picture.pixels = again;
+        scratch.beams = &beams;
+        assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, rows, &scratch, NULL), ASET_OK);
+        check(memcmp(plain, again, sizeof plain) == 0, "thing %d", i);
+        picture.stride = 4; /* rows that lie over each other come out as drawn one after the other */
+        memset(plain, 0, sizeof plain);
+        memset(again, 0, sizeof again);
+        assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, rows, &scratch, NULL), ASET_OK);
+        picture.pixels = plain;
+        scratch.beams = NULL;
+        assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, rows, &scratch, NULL), ASET_OK);
+        check(memcmp(plain, again, sizeof plain) == 0, "thing %d, rows that overlap", i);
+    }
+    drawn_close(&d);
+    model_free(&m);
+    guarded_close(&memory);
+}
+
 static void test_draft__beams_and_reach_refuse(void **state) {
     (void)state;
     uint64_t block[64];
@@ -935,6 +997,7 @@ int main(void) {
         cmocka_unit_test(test_draft__beside_a_space),
         cmocka_unit_test(test_draft__beams_and_reach_change_no_picture),
         cmocka_unit_test(test_draft__beams_follow_the_draft_and_the_view),
+        cmocka_unit_test(test_draft__beams_are_of_one_picture),
         cmocka_unit_test(test_draft__beams_and_reach_refuse),
         cmocka_unit_test(test_draft__statistics),
         cmocka_unit_test(test_draft__all_kept),

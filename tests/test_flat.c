@@ -610,7 +610,12 @@ static void test_flat__refuses_bad_arguments(void **state) {
     assert_int_equal(arena.used, 0);
     assert_int_equal(aset_flat_init(&flat, &arena, &counter, &aset_mset, &options), ASET_OK);
     assert_int_equal(aset_flat_finish(&scene, &space, &summary, &flat), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_flat_finish(NULL, &space, &summary, &flat), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_flat_finish(&scene, NULL, &summary, &flat), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_flat_finish(&scene, &space, NULL, &flat), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_flat_finish(&scene, &space, &summary, NULL), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_flat_pass(&flat, NULL), ASET_ERR_ARGUMENT);
+    assert_int_equal(aset_flat_pass(NULL, &again), ASET_ERR_ARGUMENT);
     /* a sphere without a material, a material that cannot be, a sphere of no size: as a scene answers */
     aset_sink sink = aset_flat_sink(&flat);
     aset_material bad = plain_material();
