@@ -95,7 +95,7 @@ typedef struct aset_baker {
     uint32_t *keys;
     size_t region_bytes, bins_bytes, bin_bytes;
     uint32_t capacity, n_bins;
-    struct bin *recent[6]; /* what each side found last, and under which key */
+    void *recent[6]; /* what each side found last, and under which key */
     uint32_t recent_keys[6];
     uint64_t *raw; /* one past the first facet; they grow downwards */
     uint32_t n_raw;
