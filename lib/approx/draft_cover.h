@@ -44,10 +44,10 @@ static inline aset_real draft_cover_end(const draft_cover *c) {
     return c->n > 0 ? c->layers[c->n - 1].t : 0;
 }
 
-/* The column's bit, or the nearest column's. */
+/* The bit of column (i, j); the last columns also serve what is met beyond them. From before the first ones it is 0 already. */
 static inline bool draft_bit_at(uint32_t footprint, int i, int j) {
-    i = i < 0 ? 0 : i > 3 ? 3 : i;
-    j = j < 0 ? 0 : j > 3 ? 3 : j;
+    i = i < 3 ? i : 3;
+    j = j < 3 ? j : 3;
     return (footprint >> (i + 4 * j) & 1u) != 0;
 }
 

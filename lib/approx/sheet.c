@@ -12,9 +12,14 @@
 
 #if ASET_WITH_DRAFTS
 
+/* A coordinate on an axis, in columns. */
+static inline aset_real to_column(const aset_baker *b, int a, aset_real x) {
+    return (x - b->origin[a]) * b->scale[a];
+}
+
 static inline void to_columns(const aset_baker *b, const aset_real *point, aset_real *column) {
     for (int a = 0; a < 3; a++) {
-        column[a] = (point[a] - b->origin[a]) * b->scale[a];
+        column[a] = to_column(b, a, point[a]);
     }
 }
 
@@ -233,8 +238,7 @@ void aset_sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real 
 
 /* A triangle on one axis: in columns, and the columns whose middles its box holds. */
 static inline aset_vec3 triangle_on_axis(const aset_baker *b, const aset_real *points, int a, int32_t *from, int32_t *to) {
-    aset_real origin = b->origin[a], scale = b->scale[a];
-    aset_real p = (points[a] - origin) * scale, q = (points[a + 3] - origin) * scale, r = (points[a + 6] - origin) * scale;
+    aset_real p = to_column(b, a, points[a]), q = to_column(b, a, points[a + 3]), r = to_column(b, a, points[a + 6]);
     from[a] = first_column(real_min(p, real_min(q, r)), b->n[a]);
     to[a] = first_column(real_max(p, real_max(q, r)), b->n[a]);
     return vec(p, q, r);

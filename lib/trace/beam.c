@@ -317,9 +317,10 @@ static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column
     memset(g, 0, sizeof g);
     for (uint32_t j = 0; j < d->samples; j++) {
         for (uint32_t i = 0; i < d->samples; i++) {
-            for (uint32_t k = 0; k < n; k++) {
-                uint32_t below = k >= width;
-                aset_drawing_ray(d, column + k - (below ? width : 0), row + below, i, j, &rays.origins[k], &rays.directions[k]);
+            for (uint32_t y = 0, k = 0; y < rows; y++) {
+                for (uint32_t x = 0; x < width; x++, k++) {
+                    aset_drawing_ray(d, column + x, row + y, i, j, &rays.origins[k], &rays.directions[k]);
+                }
             }
             meet(beams, &rays, n, d->tracer, d->statistics);
             for (uint32_t k = 0; k < n; k++) {
@@ -331,8 +332,10 @@ static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column
         }
     }
     size_t bytes = aset_format_bytes(d->picture->format);
-    for (uint32_t k = 0; k < n; k++) {
-        aset_drawing_put(d, &g[k], k >= width ? at + stride + (k - width) * bytes : at + k * bytes);
+    for (uint32_t y = 0, k = 0; y < rows; y++) {
+        for (uint32_t x = 0; x < width; x++, k++) {
+            aset_drawing_put(d, &g[k], at + y * stride + x * bytes);
+        }
     }
 }
 
