@@ -58,7 +58,7 @@
 /*
  * 1: walks among blocks of voxels are written out for each space and kind of ray; 0, as where the compiler is to save code (-Os): all
  * take one, 2 to 3 kB less for 3 % more instructions a ray, or 29 to 60 % more if it is approximate. Pictures and counts
- * are the same. Not part of the names.
+ * are the same; a program and its library need not agree on it.
  */
 #ifndef ASET_FUSED
 #ifdef __OPTIMIZE_SIZE__

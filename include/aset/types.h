@@ -105,7 +105,10 @@ typedef enum aset_kind {
     ASET_ALL_KINDS = 15
 } aset_kind;
 
-/* Counts of what rays did. A call adds to them once per ray; nothing is global. All exact and the same for every run. */
+/*
+ * Counts of what rays did. A call adds to them once per ray; nothing is global. All exact and the same for every run. All are
+ * uint64_t, so that the core adds them up and reports them as an array, in this order.
+ */
 typedef struct aset_statistics {
     uint64_t primary, primary_hit;
     uint64_t shadow, shadow_hit;

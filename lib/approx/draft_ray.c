@@ -313,7 +313,7 @@ static bool go(way *w) {
     const aset_draft *draft = w->draft;
     const uint32_t nx = draft->blocks[0], ny = draft->blocks[1];
     const uint32_t *map = draft->map;
-    bool exact = true; /* the lanes are where the ray is, not only in its block */
+    bool placed = true; /* the lanes are where the ray is, not only in its block */
     entry e;
     lanes l;
     if (draft->n_facets == 0 || !clip_near(w, &e)) {
@@ -326,12 +326,12 @@ static bool go(way *w) {
         if ((word & bit) == 0) {
             w->counts.cells++;
             lanes_leave_block(&l, &e);
-            exact = false;
+            placed = false;
             continue;
         }
-        if (!exact) {
+        if (!placed) {
             lanes_start(&l, w, &e);
-            exact = true;
+            placed = true;
         }
         if (walk_block(w, &l, &e, draft->rank[i >> 5] + bits_count(word & (bit - 1)))) {
             return true;

@@ -28,20 +28,6 @@
 
 #define R(x) ((aset_real)(x))
 
-/* A private function that is rarely needed, and long: it stays one where several call it. */
-#if defined(__GNUC__)
-#define APART static __attribute__((noinline))
-#else
-#define APART static
-#endif
-
-/* A header's function of which a program has one if it is compiled for size, and else as many as are called. */
-#if defined(__GNUC__) && defined(__OPTIMIZE_SIZE__)
-#define ONE_OR_MANY static __attribute__((noinline, unused))
-#else
-#define ONE_OR_MANY static inline
-#endif
-
 #if ASET_REAL_BITS == 32
 #define REAL_MAX FLT_MAX
 #define REAL_LEAST FLT_MIN /* the smallest that is no denormal */

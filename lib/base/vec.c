@@ -17,8 +17,14 @@
 #define STEP R(0x1p72)
 #endif
 
-/* a times STEP to the power of *steps; a is not 0. From the ends of the range, denormals too, at most 15 steps. */
-APART aset_vec3 in_range(aset_vec3 a, int *steps) {
+#if defined(__GNUC__)
+#define NOINLINE __attribute__((noinline))
+#else
+#define NOINLINE
+#endif
+
+/* Rarely needed, and long: one for both callers. a times STEP to the power of *steps; a is not 0. From the ends of the range, denormals too, at most 15 steps. */
+static NOINLINE aset_vec3 in_range(aset_vec3 a, int *steps) {
     aset_real largest = vec_largest(a);
     for (; largest < LEAST; largest *= STEP, ++*steps) {
         a = vec_scale(a, STEP);

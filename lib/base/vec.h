@@ -4,6 +4,13 @@
 
 #include "base/real.h"
 
+/* Inlined where it is called, but for programs that are compiled for size: these have it once. */
+#if defined(__GNUC__) && defined(__OPTIMIZE_SIZE__)
+#define INLINE_BUT_FOR_SIZE static __attribute__((noinline, unused))
+#else
+#define INLINE_BUT_FOR_SIZE static inline
+#endif
+
 static inline aset_vec3 vec(aset_real x, aset_real y, aset_real z) {
     aset_vec3 v = {x, y, z};
     return v;
@@ -34,7 +41,7 @@ static inline aset_vec3 vec_cross(aset_vec3 a, aset_vec3 b) {
     return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-ONE_OR_MANY aset_real vec_largest(aset_vec3 a) {
+INLINE_BUT_FOR_SIZE aset_real vec_largest(aset_vec3 a) {
     return real_max(real_abs(a.x), real_max(real_abs(a.y), real_abs(a.z)));
 }
 
