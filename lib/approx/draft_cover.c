@@ -16,19 +16,23 @@ static void add_layer(draft_cover *c, const draft_meeting *m, aset_real cover) {
     }
 }
 
+bool aset_draft_cover_lay(draft_cover *c, const draft_meeting *m) {
+    aset_real cover = draft_soft_cover(m->footprint, m->u, m->v);
+    if (!(cover > 0)) {
+        return false;
+    }
+    if (c->n > 0 && m->away) { /* the surface's inside: the ray came through a seam, not past an edge */
+        c->layers[c->n - 1].cover += c->left;
+        c->left = 0;
+    } else {
+        add_layer(c, m, cover);
+    }
+    return !(c->left > 0);
+}
+
 bool aset_draft_cover_add(draft_cover *c, const draft_meeting *found, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
-        aset_real cover = draft_soft_cover(found[i].footprint, found[i].u, found[i].v);
-        if (!(cover > 0)) {
-            continue;
-        }
-        if (c->n > 0 && found[i].away) { /* the surface's inside: the ray came through a seam, not past an edge */
-            c->layers[c->n - 1].cover += c->left;
-            c->left = 0;
-        } else {
-            add_layer(c, &found[i], cover);
-        }
-        if (!(c->left > 0)) {
+        if (aset_draft_cover_lay(c, &found[i])) {
             return true;
         }
     }

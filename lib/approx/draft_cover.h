@@ -80,6 +80,9 @@ static inline void draft_meeting_insert(draft_meeting *found, uint32_t n, const 
     found[n] = *m;
 }
 
+/* Lays one meeting behind what is there. True: nothing behind matters any more. */
+bool aset_draft_cover_lay(draft_cover *c, const draft_meeting *m);
+
 /* Lays what a voxel's facets gave, nearest first, behind what is there. True: nothing behind matters any more. */
 bool aset_draft_cover_add(draft_cover *c, const draft_meeting *found, uint32_t n);
 
