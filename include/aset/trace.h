@@ -31,8 +31,7 @@ typedef struct aset_tracer {
     /*
      * Trapped rays (the paper's footnote 8): an approximate ray that meets a cell after less than this fraction of a voxel's
      * diagonal is ended; it returns the background, a shadow ray counts as lit. 0, or less, or not a number: never; INFINITY:
-     * always. curtail_more turns the test
-     * around, to the letter of the footnote.
+     * always. curtail_more turns the test around, to the letter of the footnote.
      */
     aset_real curtail;
     bool curtail_more;
