@@ -46,7 +46,12 @@ for command in $(cat "$work/commands"); do
     awk -v want=".SS aset $command" '/^\.S[SH]/ { on = $0 == want } on' "$work/aset.1" >"$work/section"
     awk 'item { print } { item = $0 == ".TP" }' "$work/section" | grep -e '^-' | tr ',' ' ' | options >"$work/of_page"
     same "aset(1), $command" "$work/of_help" "$work/of_page"
-    grep -oE '\{"[a-z-]+", (required|no|optional)_argument' "tools/$command.c" | sed 's/{"\([^"]*\).*/--\1/' >"$work/of_code"
+    { # and those that several commands share
+        cat "tools/$command.c"
+        for shared in $(grep -oE 'SETTINGS_[A-Z]+_OPTIONS?' "tools/$command.c"); do
+            awk -v name="$shared" '$2 == name { on = 1 } on { print; on = /\\$/ }' tools/prepare.h
+        done
+    } | grep -oE '\{"[a-z-]+", (required|no|optional)_argument' | sed 's/{"\([^"]*\).*/--\1/' >"$work/of_code"
     grep -e '^--' "$work/of_help" >"$work/long"
     same "aset $command --help and tools/$command.c" "$work/of_code" "$work/long"
     # every word of the help is on the page

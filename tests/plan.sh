@@ -48,7 +48,14 @@ try gears 2 256K
 try tree 6 256K
 try corridor - 50K
 try tetra 4 64K
-if "$aset" plan "$dir/scene.nff" --memory 5000 2> "$dir/log"; then failed=$((failed + 1)); else passed=$((passed + 1)); fi
+# 5000 bytes hold no object of it: what is drawn is streamed, which a program with the header does not do
+check streamed-plans "$aset" plan "$dir/scene.nff" --memory 5000 --json
+cp "$dir/log" "$dir/plan.json"
+check streamed-renders "$aset" render "$dir/scene.nff" --method "$(value method)" --grid "$(value grid)" --approx "$(value approx)" \
+    --approx-depth "$(value approx_depth)" --memory 5000
+if "$aset" plan "$dir/scene.nff" --memory $((200 * wide)) 2> "$dir/log"; then failed=$((failed + 1)); else passed=$((passed + 1)); fi
+check least-plans "$aset" plan "$dir/scene.nff" --memory "$(sed -n 's/.*needs \([0-9]*\) bytes.*/\1/p' "$dir/log")"
+if "$aset" plan "$dir/scene.nff" --memory 5000 --header "$dir/plan.h" 2> "$dir/log"; then failed=$((failed + 1)); else passed=$((passed + 1)); fi
 need=$(sed -n 's/.*needs \([0-9]*\) bytes.*/\1/p' "$dir/log")
 try tetra 4 $((need / wide)) # a multiple of 8
 for method in grid set mset brute; do check "some-plan-takes-$method" grep -q "^$method\$" "$dir/methods"; done

@@ -281,12 +281,17 @@ wrong_options() {
     wrong_words scene --nonsense balls
     wrong_words compare --nonsense a.png b.png
     wrong_words render "$scenes/balls.nff" -o - --stats -
+    wrong_words render "$scenes/balls.nff" -o - --report
+    wrong_words render "$scenes/balls.nff" --stats - --report
+    wrong_words render "$scenes/balls.nff" --cells plane --approx all --approx-depth 0 --grid 513
+    wrong_words render "$scenes/balls.nff" --rules spd --samples 4
+    wrong_words "$scenes/balls.nff" a.png -o b.png
     wrong_words compare a.png b.png -o -
 }
 
 wrong_values() {
     local pair
-    for pair in -o=a.jpg -o=a -o=.png --method=nonsense --approx=nonsense --approx=all, --approx= --approx-depth=-1 \
+    for pair in -o=a.jpg -o=a -o=.png --method=nonsense --approx=nonsense --approx=all, --approx=all,none --approx=none,shadow --approx= --approx-depth=-1 \
         --approx-depth=1.5 --grid=0 --grid=5x5 --grid=5x5x0 --grid=5x5x5x5 --grid=-1 --grid=1e3 --grid=999999999 --grid= \
         --cells=nonsense --curtail=-1 --curtail=nan --curtail=inf --curtail=0x1 --curtail=half --curtail-when=never \
         --memory=-1 --memory=1T --memory=1.5M --memory=M --memory= --memory=99999999999999999999 --size=0x5 --size=5x0 \
@@ -896,6 +901,67 @@ outputs_that_cannot_be() {
     [ "$(ls -A)" = folder.png ] || fail "left $(ls -A)"
 }
 
+# What is read, or already an output, is not written over, whatever name it goes by.
+outputs_that_are_taken() {
+    cp "$scenes/balls.nff" a.nff
+    chmod 600 a.nff
+    cp a.nff before
+    ln -s a.nff link
+    ln a.nff hard
+    works render a.nff -s 8x8 -o a.png
+    cp a.png b.png
+    mkdir sub
+    local output words
+    for output in a.nff ./a.nff sub/../a.nff link hard; do
+        for words in "render a.nff -s 8x8 --stats $output" "render a.nff -s 8x8 --png -o $output" "plan a.nff -s 8x8 --header $output" \
+            "bake a.nff -o $output"; do
+            # shellcheck disable=SC2086
+            tool $words
+            [ $status -eq 1 ] && cmp -s a.nff before || fail "aset $words: status $status, or the scene is gone"
+        done
+    done
+    tool render a.nff -s 8x8 -o a.png --stats sub/../a.png
+    refused 1 "aset: a.png: "
+    tool compare a.png b.png -o ./b.png
+    refused 1 "aset: ./b.png: "
+    tool join a.png -o a.png
+    refused 1 "aset: a.png: "
+    cmp -s a.png b.png || fail "a picture is gone"
+    works render a.nff -s 8x8 -o a.png
+    works render a.nff -s 8x8 -o a.png
+}
+
+# Plan and trade take the camera and what models get, as render does.
+words_of_render_elsewhere() {
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n' >a.obj
+    works plan a.obj -s 32 --from 3,2,2 --at 0,0,0 --up 0,1,0 --angle 30 --up-axis z --ground off --smooth --json
+    works trade a.obj --quick -m grid --grids 4 -s 16 --from 3,2,2 --angle 30 --ground off -o one -q
+    works trade a.obj --quick -m grid --grids 4 -s 16 --from 3,2,2 --angle 60 --ground off -o two -q
+    for words in one two; do awk -F, 'NR > 1 { print $1, $2, $14, $15 }' $words/trade.csv >$words.rays; done
+    ! cmp -s one.rays two.rays || fail "another camera sees the same"
+    tool plan a.obj -s 32 --from 0,0,0 --at 0,0,0
+    refused 1 "aset: a.obj: "
+    tool plan a.obj -s 32 --header - --json
+    refused 2 "aset: plan: --header: "
+    works plan a.obj -s 32 --header -
+    [ "$(head -n 1 "$out")" = "/*" ] || fail "the header on standard output begins with $(head -n 1 "$out")"
+    mkdir 'a*'
+    cp a.obj 'a*/b.obj'
+    works plan 'a*/b.obj' -s 16 --header plan.h
+    ! grep -qF 'a*/b' plan.h || fail "a path ends the comment that it stands in"
+}
+
+# A tree's depth is 6 unless said otherwise, and never less in silence.
+tree_depth_is_kept() {
+    works render "$scenes/balls.nff" -s 8x8 -m octree --stats s.json
+    local need
+    need=$(json s.json memory peak)
+    works render "$scenes/balls.nff" -s 8x8 -m octree --memory "$need" --stats t.json
+    [ "$(json s.json structure interior)" = "$(json t.json structure interior)" ] || fail "another tree"
+    tool render "$scenes/balls.nff" -s 8x8 -m octree --memory $((need - 1))
+    refused 1 "aset: $scenes/balls.nff: the picture needs $need bytes, has "
+}
+
 # A failure leaves the old picture; a success keeps its mode, and the link to it.
 old_output() {
     echo old >a.ppm
@@ -1098,6 +1164,8 @@ trade_refuses() {
     wrong_words trade balls balls
     wrong_words trade balls --sizes 8x8,8x8
     wrong_words trade balls --grids 8,,9
+    wrong_words trade balls --grids 8,8
+    wrong_words trade balls --octree-depths 3,3
     wrong_words trade balls --methods mset,other
     wrong_words trade balls --rounds 0
     wrong_words trade balls --cells flat,round
@@ -1132,7 +1200,7 @@ bad_announced_but_missing_points bad_order bad_views bad_objects bad_camera_opti
 scene_text_is_read_freely budget_exact budget_approximate flat_is_streamed budget_of_two_threads budget_is_what_info_says
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
 scene_into_render compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
-full_disk file_size_limit closed_pipe outputs_that_cannot_be old_output interrupted progress_bar
+full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere tree_depth_is_kept old_output interrupted progress_bar
 trade_table trade_best_marks trade_says_what_render_says trade_of_a_model trade_resumes trade_page trade_refuses
 "
 # shellcheck disable=SC2086

@@ -76,6 +76,13 @@ static int run_short(int argc, char **argv) {
         tool_error(NULL, 0, "no memory for the command's words");
         return TOOL_FAILED;
     }
+    for (int i = 2; i < argc; i++) {
+        if (strncmp(argv[i], "-o", 2) == 0 || strncmp(argv[i], "--o", 3) == 0) {
+            tool_error(NULL, 0, "%s: the picture goes to %s already, expected no %s", argv[0], argv[1], argv[i]);
+            free(words);
+            return TOOL_USAGE;
+        }
+    }
     int n = 0;
     size_t n_draft = is_model(argv[0]) ? N_DRAFT_WORDS : 0;
     words[n++] = (char *)"render";
@@ -109,7 +116,7 @@ static int run(int argc, char **argv) {
     if (strcmp(argv[1], "--version") == 0) {
         return tool_help("aset " ASET_VERSION "\n");
     }
-    if (is_scene(argv[1])) {
+    if (strcmp(argv[1], "-") == 0 || is_scene(argv[1])) {
         return run_short(argc - 1, argv + 1);
     }
     tool_error(NULL, 0, "there is no command and no file \"%s\"; aset --help lists the commands", argv[1]);

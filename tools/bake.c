@@ -184,14 +184,6 @@ static bool write_words(tool_output *output, const aset_draft *draft) {
     return done;
 }
 
-/* Nothing in a path can end the comment it stands in. */
-static void print_in_comment(FILE *f, const char *text) {
-    for (; *text != '\0'; text++) {
-        unsigned char byte = (unsigned char)*text;
-        (void)fputc(byte < 0x20 || byte == 0x7f || byte == '*' || byte == '\\' || byte == '?' ? '_' : byte, f);
-    }
-}
-
 static void print_capitals(FILE *f, const char *before, const char *name, const char *behind) {
     (void)fputs(before, f);
     for (; *name != '\0'; name++) {
@@ -204,7 +196,7 @@ static void print_comment(FILE *f, const baked *b, const request *r) {
     const aset_draft *d = &b->draft;
     const aset_bake_report *report = &b->report;
     (void)fputs("/*\n * A draft of ", f);
-    print_in_comment(f, r->model);
+    tool_print_in_comment(f, r->model);
     (void)fprintf(f,
                   ": %" PRIu64 " objects, of which %" PRIu32 " are kept exact.\n"
                   " * %" PRIu32 "x%" PRIu32 "x%" PRIu32 " divisions, %" PRIu32
@@ -276,28 +268,18 @@ static int run(const request *r) {
 
 /* ---- words ---- */
 
-enum { OPTION_GRID = 256, OPTION_MEMORY, OPTION_UP_AXIS, OPTION_GROUND, OPTION_NAME };
+enum { OPTION_GRID = 256, OPTION_MEMORY, OPTION_NAME };
 
 static bool parse_option(request *r, int option) {
-    static const tool_word axes[] = {{"y", ASET_UP_Y}, {"z", ASET_UP_Z}, {NULL, 0}};
     settings *s = &r->settings;
-    unsigned word = 0;
     switch (option) {
     case 'o': r->output = optarg; return true;
     case OPTION_GRID: return tool_parse_grid("--grid", optarg, ASET_BAKE_DIVISIONS_MAX, s->grid);
     case OPTION_MEMORY: r->has_memory = true; return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &s->memory);
-    case OPTION_UP_AXIS:
-        if (!tool_parse_word("--up-axis", optarg, axes, &word)) {
-            return false;
-        }
-        s->has_up_axis = true;
-        s->up_axis = (aset_up)word;
-        return true;
-    case OPTION_GROUND: s->has_ground = true; return tool_parse_switch("--ground", optarg, &s->ground);
     case OPTION_NAME: return parse_name(r);
     case 'q': r->quiet = true; return true;
     case 'h': r->wants_help = true; return true;
-    default: return false;
+    default: return settings_option(s, option);
     }
 }
 
@@ -306,8 +288,7 @@ static bool parse_request(request *r, int argc, char **argv) {
         {"output", required_argument, NULL, 'o'},
         {"grid", required_argument, NULL, OPTION_GRID},
         {"memory", required_argument, NULL, OPTION_MEMORY},
-        {"up-axis", required_argument, NULL, OPTION_UP_AXIS},
-        {"ground", required_argument, NULL, OPTION_GROUND},
+        SETTINGS_MODEL_OPTIONS,
         {"name", required_argument, NULL, OPTION_NAME},
         {"quiet", no_argument, NULL, 'q'},
         {"help", no_argument, NULL, 'h'},

@@ -283,6 +283,10 @@ aset_status tool_bake(tool_baking *baking, tool_source *source, const aset_bake_
     aset_baker_abandon(&baker);
     baking->build_s += tool_seconds() - start;
     baking->report = baker.report;
+    if (status == ASET_ERR_GEOMETRY && baker.report.objects == 0) {
+        tool_error(source->path, 0, "there is no object in it, expected one at least for a draft");
+        baking->told = true;
+    }
     return status;
 }
 

@@ -161,7 +161,7 @@ static bool info_from(tool_source *source, const aset_space_options *options, ui
         done = print_method(&m, source->path, tool_methods[i], options, depth);
     }
     free(m.block);
-    return done && (!is_model || print_draft(source, options));
+    return done && (counts.objects == 0 || print_draft(source, options));
 }
 
 static int info(const char *path, const settings *s, const aset_space_options *options) {
@@ -180,22 +180,12 @@ static int info(const char *path, const settings *s, const aset_space_options *o
 }
 
 static bool parse_option(settings *s, aset_space_options *options, int option) {
-    static const tool_word axes[] = {{"y", ASET_UP_Y}, {"z", ASET_UP_Z}, {NULL, 0}};
-    unsigned word = 0;
-    bool fine = false;
     switch (option) {
     case 'g': return tool_parse_grid("--grid", optarg, ASET_DIVISIONS_MAX, options->divisions);
     case 't': return tool_parse_count("--octree-depth", optarg, 1, ASET_DEPTH_TREE_MAX, &options->depth);
     case 'l': return tool_parse_count("--leaf", optarg, 1, UINT32_MAX, &options->leaf);
     case 'd': return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &s->depth);
-    case 'o': s->has_ground = true; return tool_parse_switch("--ground", optarg, &s->ground);
-    case 's': s->smooth = true; return true;
-    case 'u':
-        fine = tool_parse_word("--up-axis", optarg, axes, &word);
-        s->has_up_axis = true;
-        s->up_axis = (aset_up)word;
-        return fine;
-    default: return false;
+    default: return settings_option(s, option);
     }
 }
 
@@ -205,15 +195,15 @@ int command_info(int argc, char **argv) {
         {"depth", required_argument, NULL, 'd'},
         {"octree-depth", required_argument, NULL, 't'},
         {"leaf", required_argument, NULL, 'l'},
-        {"ground", required_argument, NULL, 'o'},
-        {"up-axis", required_argument, NULL, 'u'},
-        {"smooth", no_argument, NULL, 's'},
+        SETTINGS_MODEL_OPTIONS,
+        SETTINGS_SMOOTH_OPTION,
         {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0},
     };
     settings s = settings_default();
     aset_space_options options;
     memset(&options, 0, sizeof options);
+    options.depth = SETTINGS_TREE_DEPTH;
     int option;
     while ((option = tool_option_next(argc, argv, "g:d:t:l:h", longs)) != -1) {
         if (option == 'h') {

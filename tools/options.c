@@ -178,13 +178,14 @@ bool tool_parse_real(const char *option, const char *text, double low, double hi
     return true;
 }
 
-bool tool_parse_size(const char *option, const char *text, uint32_t *width, uint32_t *height) {
+bool tool_parse_size(const char *option, const char *text, uint32_t high, uint32_t *width, uint32_t *height) {
     uint64_t number[2] = {0, 0};
     const char *end = read_digits(text, &number[0]);
-    bool right = end != NULL && *end == 'x' && read_whole(end + 1, 1, TOOL_SIDE_MAX, &number[1]);
-    if (!right || number[0] < 1 || number[0] > TOOL_SIDE_MAX) {
-        tool_error(NULL, 0, "%s: \"%s\" is not WIDTHxHEIGHT, both from 1 to %u, such as 640x480", option, text,
-                   TOOL_SIDE_MAX);
+    number[1] = number[0];
+    bool right = end != NULL && (*end == '\0' || (*end == 'x' && read_whole(end + 1, 1, high, &number[1])));
+    if (!right || number[0] < 1 || number[0] > high) {
+        tool_error(NULL, 0, "%s: \"%s\" is not WIDTHxHEIGHT, both from 1 to %" PRIu32 ", such as 640x480, or one number for both",
+                   option, text, high);
         return false;
     }
     if (number[0] * number[1] > TOOL_PIXELS_MAX) {
@@ -255,6 +256,7 @@ bool tool_parse_word(const char *option, const char *text, const tool_word *word
 
 bool tool_parse_words(const char *option, const char *text, const tool_word *words, unsigned *mask) {
     unsigned bits = 0;
+    bool empty = false;
     for (const char *at = text;; at++) {
         size_t length = strcspn(at, ",");
         const tool_word *word = find_word(words, at, length);
@@ -264,8 +266,13 @@ bool tool_parse_words(const char *option, const char *text, const tool_word *wor
             tool_error(NULL, 0, "%s: \"%.*s\" is not one of %s", option, (int)(length < 256 ? length : 256), at, list);
             return false;
         }
+        empty = empty || word->value == 0;
         bits |= word->value;
         at += length;
+        if (*at == '\0' && empty && bits != 0) {
+            tool_error(NULL, 0, "%s: \"%s\" says nothing and something, expected either", option, text);
+            return false;
+        }
         if (*at == '\0') {
             *mask = bits;
             return true;

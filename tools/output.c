@@ -3,6 +3,9 @@
  *
  * open: FOLDER/.aset-XXXXXX  --write-->  close: rename to FOLDER/NAME      failure, signal: unlink
  *
+ * A file that is read, or that another output becomes, is no place for an output: it would be lost. What has been read is
+ * remembered by device and number, where an output goes by its folder's and the name in it.
+ *
  * Invariant: places[i].used is set exactly while the file named in places[i].temporary is ours and not yet renamed or
  * removed. The handler of signals reads only that table. Between a rename and the clearing of used it may unlink a
  * name that is gone, which does nothing.
@@ -30,7 +33,14 @@ static struct place {
     volatile sig_atomic_t used;
     char temporary[PATH_BYTES];
     char target[PATH_BYTES];
+    struct stat folder; /* of the target */
+    struct stat old;    /* what the target is so far; st_ino 0: nothing */
 } places[PLACES];
+
+/* The last files that were opened for reading. */
+#define INPUTS 256
+static struct stat inputs[INPUTS];
+static unsigned n_inputs; /* ever */
 
 static const int deadly_signals[] = {SIGINT, SIGTERM, SIGHUP};
 #define N_DEADLY (sizeof deadly_signals / sizeof deadly_signals[0])
@@ -185,9 +195,60 @@ static mode_t output_mode(const struct stat *old) {
     return (S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH) & ~mask;
 }
 
+static bool same_file(const struct stat *a, const struct stat *b) {
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+static const char *last_part(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
+}
+
+/* What the target's folder is. False with errno. */
+static bool stat_folder(const char *target, struct stat *folder) {
+    char path[PATH_BYTES];
+    size_t length = (size_t)(last_part(target) - target);
+    memcpy(path, target, length);
+    memcpy(path + length, ".", 2); /* there is room: a name of one byte at least stood there */
+    return stat(path, folder) == 0;
+}
+
+/* Is the place's target a file that has been read, or another output's? Says so. */
+static bool is_taken(const struct place *place, const char *path) {
+    for (unsigned i = 0; i < INPUTS && i < n_inputs; i++) {
+        if (place->old.st_ino != 0 && same_file(&place->old, &inputs[i])) {
+            tool_error(path, 0, "it is read, too, expected another file for the output");
+            return true;
+        }
+    }
+    for (const struct place *other = places; other < places + PLACES; other++) {
+        if (other != place && other->used && same_file(&other->folder, &place->folder) &&
+            strcmp(last_part(other->target), last_part(place->target)) == 0) {
+            tool_error(path, 0, "another output goes there, too, expected another file");
+            return true;
+        }
+    }
+    return false;
+}
+
+bool tool_input_note(FILE *stream, const char *path) {
+    struct stat status;
+    if (fstat(fileno(stream), &status) != 0 || !S_ISREG(status.st_mode)) {
+        return true;
+    }
+    for (const struct place *place = places; place < places + PLACES; place++) {
+        if (place->used && place->old.st_ino != 0 && same_file(&place->old, &status)) {
+            tool_error(path, 0, "the output goes there, too, expected another file for it");
+            return false;
+        }
+    }
+    inputs[n_inputs++ % INPUTS] = status;
+    return true;
+}
+
 /*
  * Opens the temporary of a free place as output's stream. old is the existing file's status or NULL. False with
- * errno.
+ * errno, or with errno 0 after an error line.
  */
 static bool open_temporary(tool_output *output, const struct stat *old) {
     int slot = 0;
@@ -200,7 +261,16 @@ static bool open_temporary(tool_output *output, const struct stat *old) {
     }
     struct place *place = &places[slot];
     /* a rename asks only for rights in the folder, but a file that was made read-only is not to be lost */
-    if (!find_target(place->target, output->path) || (old != NULL && access(place->target, W_OK) != 0)) {
+    if (!find_target(place->target, output->path) || (old != NULL && access(place->target, W_OK) != 0) ||
+        !stat_folder(place->target, &place->folder)) {
+        return false;
+    }
+    memset(&place->old, 0, sizeof place->old);
+    if (old != NULL) {
+        place->old = *old;
+    }
+    if (is_taken(place, output->path)) {
+        errno = 0;
         return false;
     }
     int descriptor = make_temporary(place);
@@ -241,10 +311,17 @@ bool tool_output_open(tool_output *output, const char *path) {
     } else if (exists || errno == ENOENT) {
         opened = open_temporary(output, exists ? &old : NULL);
     }
-    if (!opened) {
+    if (!opened && errno != 0) {
         tool_error(path, 0, "cannot open it for writing: %s", strerror(errno));
     }
     return opened;
+}
+
+void tool_print_in_comment(FILE *stream, const char *text) {
+    for (; *text != '\0'; text++) {
+        unsigned char byte = (unsigned char)*text;
+        (void)fputc(byte < 0x20 || byte == 0x7f || byte == '*' || byte == '\\' || byte == '?' ? '_' : byte, stream);
+    }
 }
 
 void tool_output_fail(tool_output *output, int error) {

@@ -14,19 +14,23 @@ static const char help[] =
     "                       (neither: the most accurate that fits, and of equals the fastest)\n"
     "      --header FILE    write the sizes of this scene and setting, and the switches it needs, as a C header: of a program\n"
     "                       that holds the scene, as render does not where everything is approximate\n"
-    "  -s, --size WxH       the picture; default the scene's, else 512x512\n"
+    "                       (-: to standard output, instead of the plan)\n"
+    "  -s, --size WxH|N     the picture; default the scene's, else 512x512\n"
     "      --depth N        rays in a chain; default 5\n"
+    "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   another camera than the scene's\n"
+    "      --up-axis y|z, --ground on|off, --smooth   of models, as for render\n"
     "      --all            print every setting that was probed, before the one chosen\n"
-    "      --json           the plan as JSON\n"
+    "      --json           the plan as JSON, a line for each setting\n"
     "  -h, --help           this text\n"
     "\n"
     "Bytes are exact. Times and PSNR are expected from a sample of the picture's rays; time is said as the ratio to the exact\n"
     "picture by MSET at automatic divisions. Settings are MSET, grid and SET with up to 5 numbers of divisions\n"
-    "each, more where none of them fits, and at last brute force; exact, and with --error or --time also approximate in three\n"
-    "ways. Those that fit are probed for about a second, the finest first.\n";
+    "each, more where none of them fits, and at last brute force; exact, and with --error or --time, or where nothing exact\n"
+    "fits, also approximate in three ways. Those that fit are probed for about a second, the finest first.\n";
 
 typedef struct request {
     plan_wish wish;
+    settings settings; /* the camera, and what a model gets */
     const char *scene, *header;
     bool all, json, wants_help;
 } request;
@@ -55,11 +59,14 @@ static void print_json(const plan *p, const plan_setting *s) {
                  s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes, s->seconds / p->exact_seconds, s->seconds, s->psnr);
 }
 
+static bool is_standard(const char *path) {
+    return path != NULL && strcmp(path, "-") == 0;
+}
+
 static bool tell(const request *r, const plan *p, const measured *m) {
-    if (r->all) {
-        for (int i = 0; i < p->n; i++) {
-            print_setting(p, &p->settings[i]);
-        }
+    void (*print)(const plan *p, const plan_setting *s) = r->json ? print_json : print_setting;
+    for (int i = 0; i < p->n && r->all; i++) {
+        print(p, &p->settings[i]);
     }
     if (p->chosen < 0) {
         tool_error(r->scene, 0, "the picture needs %zu bytes, has %" PRIu64, p->least_bytes, r->wish.memory);
@@ -71,10 +78,8 @@ static bool tell(const request *r, const plan *p, const measured *m) {
                    s->seconds * 1000);
         return false;
     }
-    if (r->json) {
-        print_json(p, s);
-    } else {
-        print_setting(p, s);
+    if (!is_standard(r->header)) {
+        print(p, s);
     }
     return r->header == NULL || plan_write_header(r->header, m, r->scene, s, r->wish.depth);
 }
@@ -89,12 +94,10 @@ static bool plan_from(const request *r, tool_source *source) {
     }
     plan_wish wish = r->wish;
     wish.holds_scene = r->header != NULL;
-    const aset_view *view = &m.scene.view;
-    if (wish.width == 0) {
-        wish.width = view->width_px > 0 ? view->width_px : 512;
-        wish.height = view->height_px > 0 ? view->height_px : 512;
-    }
-    bool done = plan_make(&p, &m, r->scene, &wish) && tell(r, &p, &m);
+    aset_view *view = &m.scene.view;
+    wish.width = r->settings.width > 0 ? r->settings.width : view->width_px > 0 ? view->width_px : 512;
+    wish.height = r->settings.height > 0 ? r->settings.height : view->height_px > 0 ? view->height_px : 512;
+    bool done = settings_view(view, &r->settings, r->scene) && plan_make(&p, &m, r->scene, &wish) && tell(r, &p, &m);
     free(m.block);
     return done;
 }
@@ -106,12 +109,12 @@ static bool parse_option(request *r, int option) {
     case 'e': return tool_parse_real("--error", optarg, 1, 99, &w->error_db);
     case 't': return tool_parse_real("--time", optarg, 0.001, 1e9, &w->time_ms);
     case 'H': r->header = optarg; return true;
-    case 's': return tool_parse_size("--size", optarg, &w->width, &w->height);
+    case 's': return tool_parse_size("--size", optarg, TOOL_DRAWN_MAX, &r->settings.width, &r->settings.height);
     case 'd': return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &w->depth);
     case 'a': r->all = true; return true;
     case 'j': r->json = true; return true;
     case 'h': r->wants_help = true; return true;
-    default: return false;
+    default: return settings_option(&r->settings, option);
     }
 }
 
@@ -121,10 +124,13 @@ static bool parse_request(request *r, int argc, char **argv) {
         {"time", required_argument, NULL, 't'},   {"header", required_argument, NULL, 'H'},
         {"size", required_argument, NULL, 's'},   {"depth", required_argument, NULL, 'd'},
         {"all", no_argument, NULL, 'a'},          {"json", no_argument, NULL, 'j'},
-        {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+        {"help", no_argument, NULL, 'h'},         SETTINGS_CAMERA_OPTIONS,
+        SETTINGS_MODEL_OPTIONS,                   SETTINGS_SMOOTH_OPTION,
+        {NULL, 0, NULL, 0},
     };
     int option;
     memset(r, 0, sizeof *r);
+    r->settings = settings_default();
     r->wish.memory = 8u << 20;
     r->wish.depth = ASET_DEPTH_DEFAULT;
     while ((option = tool_option_next(argc, argv, "s:h", longs)) != -1) {
@@ -137,6 +143,10 @@ static bool parse_request(request *r, int argc, char **argv) {
     }
     if (r->wish.error_db > 0 && r->wish.time_ms > 0) {
         tool_error(NULL, 0, "plan: --error and --time are alternatives, expected one of them");
+        return false;
+    }
+    if (is_standard(r->header) && (r->json || r->all)) {
+        tool_error(NULL, 0, "plan: --header: standard output takes the header alone, expected a file for it");
         return false;
     }
     if (argc - optind != 1) {
@@ -159,6 +169,7 @@ int command_plan(int argc, char **argv) {
     if (!tool_source_open(&source, r.scene)) {
         return TOOL_FAILED;
     }
+    tool_source_set(&source, &r.settings);
     bool done = plan_from(&r, &source);
     tool_source_close(&source);
     if (done && fflush(stdout) != 0) {

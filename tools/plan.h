@@ -31,7 +31,8 @@ typedef struct plan {
     plan_setting settings[PLAN_SETTINGS_MAX];
     int n, chosen;        /* chosen: -1 if nothing fits */
     double exact_seconds; /* the exact picture's at automatic divisions, the unit of relative times */
-    size_t least_bytes;   /* the smallest need of all */
+    size_t exact_bytes;   /* the smallest need of an exact picture */
+    size_t least_bytes;   /* and of any that was measured */
 } plan;
 
 /* Probes the loaded scene and chooses. False after an error line. */

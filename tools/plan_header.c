@@ -81,10 +81,10 @@ bool plan_write_header(const char *path, const measured *m, const char *scene_pa
         return false;
     }
     FILE *f = output.stream;
-    (void)fprintf(f,
-                  "/*\n * %s\n * Written by `aset plan --header`: compile the library and the program with -include of this "
-                  "file.\n */\n#ifndef ASET_PLAN_HEADER\n#define ASET_PLAN_HEADER\n\n/* Only what the scene uses. */\n",
-                  scene_path);
+    (void)fputs("/*\n * ", f);
+    tool_print_in_comment(f, scene_path);
+    (void)fputs("\n * Written by `aset plan --header`: compile the library and the program with -include of this file.\n */\n"
+                "#ifndef ASET_PLAN_HEADER\n#define ASET_PLAN_HEADER\n\n/* Only what the scene uses. */\n", f);
     print_switches(f, &m->scene, s, depth);
     (void)fputs("\n/* Exactly this scene and setting. */\n", f);
     print_sizes(f, &m->scene, s, depth);

@@ -88,6 +88,11 @@ typedef struct error_sums {
     uint64_t values;
 } error_sums;
 
+/* Approximate settings are asked for: by an error or a time, or as nothing exact fits. */
+static bool wants_approximate(const plan *p, const plan_wish *wish) {
+    return wish->error_db > 0 || wish->time_ms > 0 || p->exact_bytes > wish->memory;
+}
+
 static double elapsed(const probing *q) {
     return tool_seconds() - q->start;
 }
@@ -344,10 +349,10 @@ static void probe_levels(plan *p, probing *q, const built *b, const aset_method 
     }
 }
 
-/* Does an exact setting fit? */
-static bool any_fits(const plan *p) {
+/* Does an exact setting fit, or any where none can? */
+static bool any_fits(const plan *p, const plan_wish *wish) {
     for (int i = 0; i < p->n; i++) {
-        if (p->settings[i].fits && p->settings[i].approx_kinds == 0) {
+        if (p->settings[i].fits && (p->settings[i].approx_kinds == 0 || p->exact_bytes > wish->memory)) {
             return true;
         }
     }
@@ -365,13 +370,13 @@ static bool any_quick(const plan *p) {
 }
 
 /*
- * A candidate's levels, if any fits. Approximations are asked for only with an error or a time; they take no fewer bytes
- * than the exact picture, but where everything is approximate and no object is held.
+ * A candidate's levels, if any fits. Approximations take no fewer bytes than the exact picture, but where everything is
+ * approximate and no object is held.
  */
 static bool probe(plan *p, probing *q, const aset_method *method, const uint32_t grid[3]) {
     built b;
     aset_space_options options = options_of(grid);
-    bool approximate = (q->wish->error_db > 0 || q->wish->time_ms > 0) && method != &aset_brute;
+    bool approximate = wants_approximate(p, q->wish) && method != &aset_brute;
     if (!measured_space(q->m, q->path, method, &options, &b.size, NULL)) {
         return false;
     }
@@ -380,6 +385,7 @@ static bool probe(plan *p, probing *q, const aset_method *method, const uint32_t
         return false;
     }
     bool fits_flat = b.flat_bytes > 0 && b.flat_bytes <= q->wish->memory;
+    p->least_bytes = b.flat_bytes > 0 && b.flat_bytes < p->least_bytes ? b.flat_bytes : p->least_bytes;
     if (bytes_of(q, &b.size, 0) > q->wish->memory && !fits_flat) {
         return true;
     }
@@ -435,7 +441,7 @@ static const aset_method *const methods[] = {&aset_mset, &aset_grid, &aset_set};
 /* One step of one method. *last: seconds of its step before, exact, 0 where none fitted; below 0: it only gets slower. */
 static bool probe_step(plan *p, probing *q, const aset_method *method, const uint32_t grid[3], double *last) {
     int first = p->n;
-    if (any_fits(p) && (*last < 0 || elapsed(q) > COARSE_END)) {
+    if (any_fits(p, q->wish) && (*last < 0 || elapsed(q) > COARSE_END)) {
         return true;
     }
     if (!probe(p, q, method, grid)) {
@@ -453,7 +459,7 @@ static bool probe_all(plan *p, probing *q) {
     double last[N_METHODS] = {0};
     uint32_t grid[3];
     bool more = true;
-    for (int i = 0; more && (i < STEPS || !any_fits(p)); i++) {
+    for (int i = 0; more && (i < STEPS || !any_fits(p, q->wish)); i++) {
         more = false;
         for (size_t k = 0; k < N_METHODS; k++) {
             if (step_down(q->m, i, methods[k], grid)) {
@@ -633,11 +639,11 @@ bool plan_make(plan *p, measured *m, const char *path, const plan_wish *wish) {
     bool done = q != NULL && stack != NULL;
     memset(p, 0, sizeof *p);
     p->chosen = -1;
-    p->least_bytes = m->scene_bytes + ASET_BYTES_SCRATCH(wish->depth); /* brute force has nothing more */
+    p->exact_bytes = p->least_bytes = m->scene_bytes + ASET_BYTES_SCRATCH(wish->depth); /* brute force has nothing more */
     if (!done) {
         tool_error(path, 0, "plan: the machine has no memory for a probe");
     }
-    if (done && p->least_bytes <= wish->memory) { /* else nothing fits, and there is nothing to probe */
+    if (done && (p->exact_bytes <= wish->memory || !wish->holds_scene)) { /* else there is nothing to probe */
         q->m = m;
         q->wish = wish;
         q->path = path;

@@ -23,19 +23,6 @@ const aset_method *tool_method_find(const char *name) {
     return NULL;
 }
 
-settings settings_default(void) {
-    settings s;
-    memset(&s, 0, sizeof s);
-    s.method = &aset_mset;
-    s.approx_depth = 1;
-    s.curtail = 0.5;
-    s.memory = 8u << 20;
-    s.samples = 1;
-    s.depth = ASET_DEPTH_DEFAULT;
-    s.threads = 1;
-    return s;
-}
-
 static bool approximates(const settings *s) {
     return s->approx_kinds != 0;
 }
@@ -73,7 +60,6 @@ static void tell_need(tool_source *source, const settings *s, const aset_counts 
     if (options.divisions[0] == 0) {
         options.divisions[0] = options.divisions[1] = options.divisions[2] = 1;
     }
-    options.depth = options.depth > 0 ? options.depth : 1;
     if (measured_space(&m, source->path, s->method, &options, &size, approximates(s) ? &summary : NULL)) {
         size_t before = m.scene_bytes + scratch_bytes(s), kept = size.cells + size.references + size.voxels + summary;
         tool_error(source->path, 0, "the picture needs %zu bytes, has %" PRIu64,
@@ -91,22 +77,9 @@ static const aset_scene *stage_of(const prepared *p) {
 static bool choose_view(prepared *p, const settings *s) {
     aset_view *view = &p->view;
     *view = stage_of(p)->view;
-    view->from = s->has_from ? s->from : view->from;
-    view->at = s->has_at ? s->at : view->at;
-    view->up = s->has_up ? s->up : view->up;
-    if (s->has_angle) {
-        view->angle_deg = (aset_real)s->angle_deg;
-        view->height = 0;
-    }
     view->width_px = s->width > 0 ? s->width : view->width_px > 0 ? view->width_px : 512;
     view->height_px = s->height > 0 ? s->height : view->height_px > 0 ? view->height_px : 512;
-    aset_counter ignored;
-    aset_sink check = aset_counter_sink(&ignored);
-    if (check.view(check.context, view) != ASET_OK) {
-        tool_error(p->path, 0, "the view has no direction, or up lies along it; expected other --from, --at or --up");
-        return false;
-    }
-    return true;
+    return settings_view(view, s, p->path);
 }
 
 #define REACH_TILES 64u
@@ -416,7 +389,7 @@ static bool prepare_baked(prepared *p, const settings *s) {
         tool_error(p->path, 0, "cannot be opened: %s", strerror(errno));
         return false;
     }
-    bool done = open_baked(p, s, file);
+    bool done = tool_input_note(file, p->path) && open_baked(p, s, file);
     (void)fclose(file);
     p->load_s = tool_seconds() - start;
     return done;

@@ -36,7 +36,26 @@ typedef struct settings {
     bool transparent; /* pixels that show nothing stay so; no ground unless has_ground */
 } settings;
 
+/* Halvings in octree, arts and excell unless said otherwise: fewer are never taken in silence. */
+#define SETTINGS_TREE_DEPTH 6u
+
+/* --- settings.c --- */
+
 settings settings_default(void);
+
+/* Options that several commands have, for their tables of long ones: of models, of a scene's camera. */
+enum { SETTINGS_FROM = 1024, SETTINGS_AT, SETTINGS_UP, SETTINGS_ANGLE, SETTINGS_UP_AXIS, SETTINGS_GROUND, SETTINGS_SMOOTH };
+#define SETTINGS_MODEL_OPTIONS                                                                                         \
+    {"up-axis", required_argument, NULL, SETTINGS_UP_AXIS}, {"ground", required_argument, NULL, SETTINGS_GROUND}
+#define SETTINGS_SMOOTH_OPTION {"smooth", no_argument, NULL, SETTINGS_SMOOTH}
+#define SETTINGS_CAMERA_OPTIONS                                                                                        \
+    {"from", required_argument, NULL, SETTINGS_FROM}, {"at", required_argument, NULL, SETTINGS_AT},                    \
+        {"up", required_argument, NULL, SETTINGS_UP}, {"angle", required_argument, NULL, SETTINGS_ANGLE}
+/* Takes one of them, its value being in optarg. False: after an error line, or it is none of them. */
+bool settings_option(settings *s, int option);
+
+/* A scene's view with the camera's words laid over it. False after an error line. */
+bool settings_view(aset_view *view, const settings *s, const char *path);
 
 /* Everything that a picture is drawn from. */
 typedef struct prepared {

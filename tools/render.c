@@ -12,7 +12,6 @@
 #include <string.h>
 
 #define THREADS_MAX 256u
-#define SIDE_MAX 65535u
 
 static const char help[] =
     "aset render SCENE [-o OUT.png]: draws a scene exactly or approximately, in a fixed block of memory.\n"
@@ -65,13 +64,6 @@ enum {
     OPTION_DEPTH,
     OPTION_RULES,
     OPTION_ROWS,
-    OPTION_FROM,
-    OPTION_AT,
-    OPTION_UP,
-    OPTION_ANGLE,
-    OPTION_UP_AXIS,
-    OPTION_GROUND,
-    OPTION_SMOOTH,
     OPTION_TRANSPARENT,
     OPTION_STATS,
     OPTION_REPORT,
@@ -96,13 +88,9 @@ static const struct option longs[] = {
     {"rules", required_argument, NULL, OPTION_RULES},
     {"rows", required_argument, NULL, OPTION_ROWS},
     {"threads", required_argument, NULL, 'j'},
-    {"from", required_argument, NULL, OPTION_FROM},
-    {"at", required_argument, NULL, OPTION_AT},
-    {"up", required_argument, NULL, OPTION_UP},
-    {"angle", required_argument, NULL, OPTION_ANGLE},
-    {"up-axis", required_argument, NULL, OPTION_UP_AXIS},
-    {"ground", required_argument, NULL, OPTION_GROUND},
-    {"smooth", no_argument, NULL, OPTION_SMOOTH},
+    SETTINGS_CAMERA_OPTIONS,
+    SETTINGS_MODEL_OPTIONS,
+    SETTINGS_SMOOTH_OPTION,
     {"transparent", no_argument, NULL, OPTION_TRANSPARENT},
     {"stats", required_argument, NULL, OPTION_STATS},
     {"report", no_argument, NULL, OPTION_REPORT},
@@ -161,46 +149,9 @@ static bool parse_samples(settings *s, const char *text) {
     return true;
 }
 
-/* WxH, or N for NxN. */
-static bool parse_size(settings *s, const char *text) {
-    char square[64];
-    size_t digits = strspn(text, "0123456789");
-    if (digits > 0 && text[digits] == '\0' && 2 * digits + 2 <= sizeof square) {
-        (void)snprintf(square, sizeof square, "%sx%s", text, text);
-        text = square;
-    }
-    if (!tool_parse_size("--size", text, &s->width, &s->height)) {
-        return false;
-    }
-    if (s->width > SIDE_MAX || s->height > SIDE_MAX) {
-        tool_error(NULL, 0, "--size: %" PRIu32 "x%" PRIu32 " is too large, expected at most %u on a side", s->width,
-                   s->height, SIDE_MAX);
-        return false;
-    }
-    return true;
-}
-
-static bool parse_model(settings *s, int option) {
-    static const tool_word axes[] = {{"y", ASET_UP_Y}, {"z", ASET_UP_Z}, {NULL, 0}};
-    unsigned word = 0;
-    switch (option) {
-    case OPTION_UP_AXIS:
-        if (!tool_parse_word("--up-axis", optarg, axes, &word)) {
-            return false;
-        }
-        s->has_up_axis = true;
-        s->up_axis = (aset_up)word;
-        return true;
-    case OPTION_GROUND: s->has_ground = true; return tool_parse_switch("--ground", optarg, &s->ground);
-    case OPTION_SMOOTH: s->smooth = true; return true;
-    case OPTION_TRANSPARENT: s->transparent = true; return true;
-    default: return false;
-    }
-}
-
 static bool parse_more(request *r, int option) {
     static const tool_word cells[] = {{"flat", CELLS_FLAT}, {"normal", CELLS_NORMAL}, {"plane", CELLS_PLANE}, {NULL, 0}},
-                           rules[] = {{"spd", 1}, {NULL, 0}},
+                           rules[] = {{"spd", 1}, {"off", 0}, {NULL, 0}},
                            sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}};
     settings *s = &r->settings;
     unsigned word = 0;
@@ -218,16 +169,18 @@ static bool parse_more(request *r, int option) {
         }
         s->curtail_more = word != 0;
         return true;
-    case OPTION_RULES: s->spd_rules = true; return tool_parse_word("--rules", optarg, rules, &word);
+    case OPTION_RULES:
+        if (!tool_parse_word("--rules", optarg, rules, &word)) {
+            return false;
+        }
+        s->spd_rules = word != 0;
+        return true;
     case OPTION_ROWS: r->has_rows = true; return tool_parse_range("--rows", optarg, 65536, &r->first_row, &r->end_row);
-    case OPTION_FROM: s->has_from = true; return tool_parse_vec3("--from", optarg, &s->from);
-    case OPTION_AT: s->has_at = true; return tool_parse_vec3("--at", optarg, &s->at);
-    case OPTION_UP: s->has_up = true; return tool_parse_vec3("--up", optarg, &s->up);
-    case OPTION_ANGLE: s->has_angle = true; return tool_parse_real("--angle", optarg, 0.001, 179.999, &s->angle_deg);
     case OPTION_STATS: r->stats = optarg; return true;
     case OPTION_REPORT: r->report = true; return true;
     case OPTION_PNG: r->is_png = true; return true;
-    default: return parse_model(s, option);
+    case OPTION_TRANSPARENT: s->transparent = true; return true;
+    default: return settings_option(s, option);
     }
 }
 
@@ -245,7 +198,7 @@ static bool parse_option(request *r, int option) {
         return tool_parse_count("--octree-depth", optarg, 1, ASET_DEPTH_TREE_MAX, &s->tree_depth);
     case OPTION_LEAF: return tool_parse_count("--leaf", optarg, 1, UINT32_MAX, &s->leaf);
     case OPTION_MEMORY: return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &s->memory);
-    case 's': return parse_size(s, optarg);
+    case 's': return tool_parse_size("--size", optarg, TOOL_DRAWN_MAX, &s->width, &s->height);
     case OPTION_SAMPLES: return parse_samples(s, optarg);
     case OPTION_DEPTH: return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &s->depth);
     case 'j': return tool_parse_count("--threads", optarg, 1, THREADS_MAX, &s->threads);
@@ -258,12 +211,18 @@ static bool parse_option(request *r, int option) {
 /* Words that are right by themselves and not together. */
 static bool check_request(const request *r) {
     const settings *s = &r->settings;
+    const uint32_t *grid = s->grid;
     bool more = r->report || (r->stats != NULL && strcmp(r->stats, "-") == 0);
     if (r->output != NULL && !r->is_png && !tool_picture_path_ok(r->output)) {
         return false;
     }
     if (r->output != NULL && strcmp(r->output, "-") == 0 && more) {
-        tool_error(NULL, 0, "--stats: the picture already goes to standard output, expected a file for one of them");
+        tool_error(NULL, 0, "%s: the picture already goes to standard output, expected a file for %s",
+                   r->report ? "--report" : "--stats", r->report ? "it" : "one of them");
+        return false;
+    }
+    if (r->report && r->stats != NULL && strcmp(r->stats, "-") == 0) {
+        tool_error(NULL, 0, "--report: --stats already goes to standard output, expected a file for that");
         return false;
     }
     if (r->output != NULL && r->stats != NULL && strcmp(r->output, r->stats) == 0 && strcmp(r->output, "-") != 0) {
@@ -272,6 +231,14 @@ static bool check_request(const request *r) {
     }
     if (s->cells != CELLS_FLAT && s->method != &aset_mset && s->method != &aset_grid) {
         tool_error(NULL, 0, "--cells: drafts of %s are flat, expected --method mset or grid", aset_method_name(s->method));
+        return false;
+    }
+    if (s->cells != CELLS_FLAT && (grid[0] > ASET_BAKE_DIVISIONS_MAX || grid[1] > ASET_BAKE_DIVISIONS_MAX || grid[2] > ASET_BAKE_DIVISIONS_MAX)) {
+        tool_error(NULL, 0, "--grid: too many divisions for a draft, expected at most %u, or --cells flat", ASET_BAKE_DIVISIONS_MAX);
+        return false;
+    }
+    if (s->spd_rules && s->samples > 1) {
+        tool_error(NULL, 0, "--rules: the SPD procedure has one ray a pixel corner, expected no --samples");
         return false;
     }
     if (s->transparent && r->output != NULL && !r->is_png && tool_has_extension(r->output, ".ppm")) {
@@ -284,6 +251,11 @@ static bool check_request(const request *r) {
 /* A baked draft has nothing exact to draw but what it keeps, so every ray is approximate. */
 static bool set_baked(request *r) {
     settings *s = &r->settings;
+    if (s->grid[0] > 0 || s->smooth || s->has_ground || s->has_up_axis) {
+        tool_error(NULL, 0, "%s: %s is a draft already, expected it for the model that it was baked from",
+                   s->grid[0] > 0 ? "--grid" : s->smooth ? "--smooth" : s->has_ground ? "--ground" : "--up-axis", r->scene);
+        return false;
+    }
     if ((r->has_approx && s->approx_kinds != ASET_ALL_KINDS) || (r->has_approx_depth && s->approx_depth != 0)) {
         tool_error(NULL, 0, "--approx: %s is a draft, expected --approx all --approx-depth 0, or neither", r->scene);
         return false;

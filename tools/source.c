@@ -121,7 +121,7 @@ static bool open_library(void *context, const char *name, aset_read *read, void 
         memcpy(path, s->path, folder);
         memcpy(path + folder, name, length + 1);
         if (stat(path, &status) == 0) {
-            errno = EINVAL;
+            errno = S_ISDIR(status.st_mode) ? EISDIR : EINVAL;
             file = S_ISREG(status.st_mode) ? fopen(path, "rb") : NULL;
         }
     }
@@ -324,6 +324,15 @@ bool tool_source_open(tool_source *source, const char *path) {
     tool_kind kind = is_input ? TOOL_KIND_NFF : tool_kind_of(path);
     memset(source, 0, sizeof *source);
     source->path = path;
+    if (kind == TOOL_KIND_NONE && access(path, R_OK) != 0) {
+        tool_error(path, 0, "cannot be opened: %s", strerror(errno));
+        return false;
+    }
+    struct stat status;
+    if (kind == TOOL_KIND_NONE && stat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
+        tool_error(path, 0, "cannot be opened: %s", strerror(EISDIR));
+        return false;
+    }
     if (kind == TOOL_KIND_NONE) {
         tool_error(path, 0, "neither a scene by its name nor a model by its first bytes, expected one that ends in .nff, .obj, .stl "
                             "or .ply");
@@ -334,6 +343,10 @@ bool tool_source_open(tool_source *source, const char *path) {
     source->stream = is_input ? stdin : fopen(path, "rb");
     if (source->stream == NULL) {
         tool_error(path, 0, "cannot be opened: %s", strerror(errno));
+        return false;
+    }
+    if (!tool_input_note(source->stream, path)) {
+        tool_source_close(source);
         return false;
     }
     if (fseek(source->stream, 0, SEEK_SET) != 0) {

@@ -243,19 +243,8 @@ static int thumb(const request *r) {
 enum { OPTION_MEMORY = 256, OPTION_TRANSPARENT };
 
 static bool parse_size(request *r, const char *text) {
-    uint32_t width = 0, height = 0;
-    if (strchr(text, 'x') != NULL) {
-        if (!tool_parse_size("thumb: --size", text, &width, &height)) {
-            return false;
-        }
-    } else if (tool_parse_count("thumb: --size", text, 1, SIDE_MOST, &width)) {
-        height = width;
-    } else {
-        return false;
-    }
-    if (width > SIDE_MOST || height > SIDE_MOST || (uint64_t)width * height > TOOL_PIXELS_MAX) {
-        tool_error(NULL, 0, "thumb: --size: %s is too large, expected at most %u on a side and %u pixels", text, SIDE_MOST,
-                   TOOL_PIXELS_MAX);
+    uint32_t width, height;
+    if (!tool_parse_size("thumb: --size", text, SIDE_MOST, &width, &height)) {
         return false;
     }
     (void)snprintf(r->size, sizeof r->size, "%" PRIu32 "x%" PRIu32, width, height);

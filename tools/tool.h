@@ -79,8 +79,8 @@ bool tool_parse_count(const char *option, const char *text, uint32_t low, uint32
 bool tool_parse_bytes(const char *option, const char *text, uint64_t low, uint64_t high, uint64_t *value);
 /* A finite decimal number from low to high. */
 bool tool_parse_real(const char *option, const char *text, double low, double high, double *value);
-/* WxH, both from 1 to TOOL_SIDE_MAX and TOOL_PIXELS_MAX pixels at most. */
-bool tool_parse_size(const char *option, const char *text, uint32_t *width, uint32_t *height);
+/* WxH, or N for both, from 1 to high and TOOL_PIXELS_MAX pixels at most. */
+bool tool_parse_size(const char *option, const char *text, uint32_t high, uint32_t *width, uint32_t *height);
 /* N, NXxNYxNZ or auto; N stands for all three axes, auto gives 0 on all. Each from 1 to high. */
 bool tool_parse_grid(const char *option, const char *text, uint32_t high, uint32_t grid[3]);
 /* X,Y,Z, finite in aset_real. */
@@ -89,7 +89,7 @@ bool tool_parse_vec3(const char *option, const char *text, aset_vec3 *value);
 bool tool_parse_range(const char *option, const char *text, uint32_t high, uint32_t *first, uint32_t *end);
 /* One of the words; words ends with a NULL name, which also ends the list that the error line gives. */
 bool tool_parse_word(const char *option, const char *text, const tool_word *words, unsigned *value);
-/* Words with commas between them: the values of all, or-ed. At least one word; repeats do no harm. */
+/* Words with commas between them: the values of all, or-ed; one of value 0 stands alone. Repeats do no harm. */
 bool tool_parse_words(const char *option, const char *text, const tool_word *words, unsigned *mask);
 /* "on" or "off". */
 bool tool_parse_switch(const char *option, const char *text, bool *value);
@@ -115,7 +115,10 @@ typedef struct tool_output {
 /* For main, once: signals remove the temporaries, a closed pipe or a file limit is a failed write and not the end. */
 void tool_output_guard(void);
 
+/* Refuses, besides what cannot be written, files that have been read and where another open output goes. */
 bool tool_output_open(tool_output *output, const char *path);
+/* Of a file that was opened for reading: no output shall replace it. False after an error line: one is about to. */
+bool tool_input_note(FILE *stream, const char *path);
 /* Writes size bytes. False after an error line, now or at an earlier write. */
 bool tool_output_write(tool_output *output, const void *bytes, size_t size);
 /*
@@ -127,12 +130,16 @@ void tool_output_fail(tool_output *output, int error);
 bool tool_output_close(tool_output *output);
 /* Ends it without a file and without a word. Does nothing if it is not open. */
 void tool_output_abort(tool_output *output);
+/* A path, or whatever text, so that nothing in it can end the C comment that it stands in. */
+void tool_print_in_comment(FILE *stream, const char *text);
 /* The words for a path in an error line: "standard output" for "-". */
 const char *tool_output_name(const char *path);
 
 /* --- png.c: pictures as rows and as a whole --- */
 
+/* Of a picture that is read or joined, and of one that is drawn. */
 #define TOOL_SIDE_MAX 1000000u
+#define TOOL_DRAWN_MAX 65535u
 #define TOOL_PIXELS_MAX (1u << 28)
 
 typedef struct tool_picture tool_picture;

@@ -25,7 +25,9 @@ static const char help[] =
     "      --grids LIST         divisions of mset, set, grid: N, NXxNYxNZ or auto; default 16,32,64\n"
     "      --octree-depths LIST  halvings in octree, arts, excell; default 4,6\n"
     "      --cells LIST         what cells remember: flat (average textures), normal, plane (drafts); default flat,plane\n"
-    "  -s, --sizes LIST         pictures, each WxH; default 256x256\n"
+    "  -s, --sizes LIST         pictures, each WxH or N; default 256x256\n"
+    "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   another camera than the scenes'\n"
+    "      --up-axis y|z, --ground on|off, --smooth   of models, as for render\n"
     "      --rounds N           measurements of each setting; default 3\n"
     "      --quick              mset,grid, 16,32, 128x128 and one round, but for what other options say\n"
     "  -q, --quiet              no progress bar, no words at the end\n"
@@ -72,30 +74,34 @@ static bool parse_cells(trade_words *w, const char *text) {
     return tool_parse_words("--cells", text, words, &w->cells);
 }
 
+/* True, after an error line, if the last of n values of a list stands there before. */
+static bool is_repeated(const char *option, const char *text, const void *values, uint32_t n, size_t size) {
+    const unsigned char *at = values;
+    for (uint32_t i = 0; i + 1 < n; i++) {
+        if (memcmp(at + i * size, at + (n - 1) * size, size) == 0) {
+            tool_error(NULL, 0, "%s: %s stands there twice", option, text);
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool parse_grid(trade_words *w, const char *text) {
-    return tool_parse_grid("--grids", text, ASET_DIVISIONS_MAX, w->grids[w->n_grids++]);
+    return tool_parse_grid("--grids", text, ASET_DIVISIONS_MAX, w->grids[w->n_grids++]) &&
+           !is_repeated("--grids", text, w->grids, w->n_grids, sizeof w->grids[0]);
 }
 
 static bool parse_depth(trade_words *w, const char *text) {
-    return tool_parse_count("--octree-depths", text, 1, ASET_DEPTH_TREE_MAX, &w->depths[w->n_depths++]);
+    return tool_parse_count("--octree-depths", text, 1, ASET_DEPTH_TREE_MAX, &w->depths[w->n_depths++]) &&
+           !is_repeated("--octree-depths", text, w->depths, w->n_depths, sizeof w->depths[0]);
 }
 
 static bool parse_size(trade_words *w, const char *text) {
     uint32_t *size = w->sizes[w->n_sizes++];
-    if (!tool_parse_size("--sizes", text, &size[0], &size[1])) {
+    if (!tool_parse_size("--sizes", text, TOOL_DRAWN_MAX, &size[0], &size[1])) {
         return false;
     }
-    for (uint32_t i = 0; i + 1 < w->n_sizes; i++) {
-        if (memcmp(w->sizes[i], size, sizeof w->sizes[i]) == 0) {
-            tool_error(NULL, 0, "--sizes: %s stands there twice", text);
-            return false;
-        }
-    }
-    if (size[0] > 65535 || size[1] > 65535) {
-        tool_error(NULL, 0, "--sizes: sides above 65535 cannot be drawn");
-        return false;
-    }
-    return true;
+    return !is_repeated("--sizes", text, w->sizes, w->n_sizes, sizeof w->sizes[0]);
 }
 
 /* Words with commas between them, at most TRADE_LIST_MAX, one after the other to parse. */
@@ -136,7 +142,7 @@ static bool parse_option(trade_words *w, int option) {
     case OPTION_QUICK: w->quick = true; return true;
     case 'q': w->quiet = true; return true;
     case 'h': w->wants_help = true; return true;
-    default: return false;
+    default: return settings_option(&w->settings, option);
     }
 }
 
@@ -172,12 +178,16 @@ static bool parse_words(trade_words *w, int argc, char **argv) {
         {"sizes", required_argument, NULL, 's'},
         {"rounds", required_argument, NULL, OPTION_ROUNDS},
         {"quick", no_argument, NULL, OPTION_QUICK},
+        SETTINGS_CAMERA_OPTIONS,
+        SETTINGS_MODEL_OPTIONS,
+        SETTINGS_SMOOTH_OPTION,
         {"quiet", no_argument, NULL, 'q'},
         {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0},
     };
     int option;
     memset(w, 0, sizeof *w);
+    w->settings = settings_default();
     while ((option = tool_option_next(argc, argv, "o:m:s:qh", longs)) != -1) {
         if (!parse_option(w, option)) {
             return false;

@@ -33,6 +33,7 @@ typedef struct trade_words {
     unsigned cells;   /* bits, by settings_cells */
     uint32_t grids[TRADE_LIST_MAX][3], depths[TRADE_LIST_MAX], sizes[TRADE_LIST_MAX][2];
     uint32_t n_grids, n_depths, n_sizes, rounds;
+    settings settings; /* the camera, and what models get */
     bool quick, quiet, wants_help;
 } trade_words;
 

@@ -112,7 +112,25 @@ static char *make_label(const char *name) {
     return label;
 }
 
-static bool open_scene(trade_scene *scene, const char *name) {
+/* Of what the words say of the camera and of models; nothing if they say nothing. */
+static uint64_t hash_look(uint64_t hash, const settings *s) {
+    const struct {
+        bool is_given;
+        const void *value;
+        size_t size;
+    } parts[] = {{s->has_from, &s->from, sizeof s->from},       {s->has_at, &s->at, sizeof s->at},
+                 {s->has_up, &s->up, sizeof s->up},             {s->has_angle, &s->angle_deg, sizeof s->angle_deg},
+                 {s->has_up_axis, &s->up_axis, sizeof s->up_axis}, {s->has_ground, &s->ground, sizeof s->ground},
+                 {s->smooth, &s->smooth, sizeof s->smooth}};
+    for (unsigned char i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        if (parts[i].is_given) {
+            hash = hash_bytes(hash_bytes(hash, &i, 1), parts[i].value, parts[i].size);
+        }
+    }
+    return hash;
+}
+
+static bool open_scene(trade_scene *scene, const char *name, const settings *s) {
     aset_counter counter;
     aset_sink sink = aset_counter_sink(&counter);
     scene->name = name;
@@ -124,7 +142,8 @@ static bool open_scene(trade_scene *scene, const char *name) {
     if (!(is_file(name) ? tool_source_open(&scene->source, name) : open_procedural(&scene->source, name))) {
         return false;
     }
-    scene->hash = hash_source(&scene->source);
+    tool_source_set(&scene->source, s);
+    scene->hash = hash_look(hash_source(&scene->source), s);
     if (!tool_source_read(&scene->source, &sink) || !measured_open(&scene->loaded, &scene->source, &counter.counts)) {
         scene->loaded.block = NULL; /* given back already */
         return false;
@@ -153,13 +172,13 @@ static aset_status pass_light(void *context, const aset_light *light) {
 }
 
 /* A scene file says where it is seen from; a model is seen from so far that it fits into a picture of this shape. */
-static bool find_view(trade_group *group) {
+static bool find_view(trade_group *group, const settings *s) {
     const tool_source *source = &group->scene->source;
     aset_stage_options options = source->stage;
     aset_sink sink;
     group->view = group->scene->loaded.scene.view;
     if (source->format == TOOL_NFF) {
-        return true;
+        return settings_view(&group->view, s, source->path);
     }
     memset(&sink, 0, sizeof sink);
     sink.context = &group->view;
@@ -172,7 +191,7 @@ static bool find_view(trade_group *group) {
     if (status != ASET_OK) {
         tool_error(source->path, 0, "its view: %s", aset_status_text(status));
     }
-    return status == ASET_OK;
+    return status == ASET_OK && settings_view(&group->view, s, source->path);
 }
 
 /* --- the plan --- */
@@ -318,7 +337,7 @@ bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names) 
     bool memory = t->scenes != NULL && t->groups != NULL && t->settings != NULL;
     for (uint32_t i = 0; memory && i < n_names; i++) {
         trade_scene *scene = &t->scenes[t->n_scenes++];
-        if (!open_scene(scene, names[i])) {
+        if (!open_scene(scene, names[i], &w->settings)) {
             return false;
         }
         for (uint32_t k = 0; k < w->n_sizes; k++) {
@@ -326,7 +345,7 @@ bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names) 
             group->scene = scene;
             group->width = w->sizes[k][0];
             group->height = w->sizes[k][1];
-            if (!find_view(group) || !plan_group(t, w, group)) {
+            if (!find_view(group, &w->settings) || !plan_group(t, w, group)) {
                 return false;
             }
         }

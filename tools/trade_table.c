@@ -12,6 +12,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define KEY_FIELDS "scene,method,grid,octree_depth,approx,level,cells,curtail,size"
@@ -156,6 +157,11 @@ static bool read_partial(trade *t, const char *path, long *end) {
     unsigned long n_lines = 0;
     bool ours = true;
     *end = 0;
+    struct stat status;
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) { /* a device may never end */
+        tool_error(path, 0, "is no plain file, expected what an interrupted sweep left, or nothing");
+        return false;
+    }
     FILE *stream = fopen(path, "r");
     if (stream == NULL) {
         if (errno != ENOENT) {

@@ -1,0 +1,59 @@
+/*
+ * settings.c - the words that all commands which draw, plan, measure or bake take alike: where a scene is seen from, and what a
+ * model gets beside itself.
+ */
+#include "prepare.h"
+
+#include <string.h>
+
+settings settings_default(void) {
+    settings s;
+    memset(&s, 0, sizeof s);
+    s.method = &aset_mset;
+    s.approx_depth = 1;
+    s.tree_depth = SETTINGS_TREE_DEPTH;
+    s.curtail = 0.5;
+    s.memory = 8u << 20;
+    s.samples = 1;
+    s.depth = ASET_DEPTH_DEFAULT;
+    s.threads = 1;
+    return s;
+}
+
+bool settings_option(settings *s, int option) {
+    static const tool_word axes[] = {{"y", ASET_UP_Y}, {"z", ASET_UP_Z}, {NULL, 0}};
+    unsigned word = 0;
+    switch (option) {
+    case SETTINGS_FROM: s->has_from = true; return tool_parse_vec3("--from", optarg, &s->from);
+    case SETTINGS_AT: s->has_at = true; return tool_parse_vec3("--at", optarg, &s->at);
+    case SETTINGS_UP: s->has_up = true; return tool_parse_vec3("--up", optarg, &s->up);
+    case SETTINGS_ANGLE: s->has_angle = true; return tool_parse_real("--angle", optarg, 0.001, 179.999, &s->angle_deg);
+    case SETTINGS_UP_AXIS:
+        if (!tool_parse_word("--up-axis", optarg, axes, &word)) {
+            return false;
+        }
+        s->has_up_axis = true;
+        s->up_axis = (aset_up)word;
+        return true;
+    case SETTINGS_GROUND: s->has_ground = true; return tool_parse_switch("--ground", optarg, &s->ground);
+    case SETTINGS_SMOOTH: s->smooth = true; return true;
+    default: return false;
+    }
+}
+
+bool settings_view(aset_view *view, const settings *s, const char *path) {
+    view->from = s->has_from ? s->from : view->from;
+    view->at = s->has_at ? s->at : view->at;
+    view->up = s->has_up ? s->up : view->up;
+    if (s->has_angle) {
+        view->angle_deg = (aset_real)s->angle_deg;
+        view->height = 0;
+    }
+    aset_counter ignored;
+    aset_sink check = aset_counter_sink(&ignored);
+    if (check.view(check.context, view) != ASET_OK) {
+        tool_error(path, 0, "the view has no direction, or up lies along it; expected other --from, --at or --up");
+        return false;
+    }
+    return true;
+}
