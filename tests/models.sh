@@ -211,7 +211,7 @@ colours() {
     printf 'newmtl red\nKd 1 x\n' >a.mtl
     refuses 1 "aset: a.mtl:2: " render a.obj -s 16
     rm a.mtl && mkdir a.mtl
-    works_and_says "$unknown Invalid argument" render a.obj -s 16
+    works_and_says "$unknown Is a directory" render a.obj -s 16
 }
 
 # File managers hand over copies whose names say nothing, and want a PNG in a file called anything.

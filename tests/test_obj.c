@@ -267,6 +267,16 @@ static void test_obj__errors_of_libraries(void **state) {
     assert_int_equal(report.vertices, 3);
     assert_string_equal(report.token, "x");
     assert_int_equal(s.opened, s.closed);
+    char names[400] = "d 0.5\nKd 1 0 0\nnewmtl "; /* what belongs to no material; a name that is too long */
+    const char *const own[] = {"broken.mtl", names, NULL};
+    memset(names + strlen(names), 'x', 300);
+    s.books = own;
+    from = source_of(text, strlen(text), SIZE_MAX);
+    assert_int_equal(aset_load_obj(&sink, give, &from, &options, &report), ASET_ERR_LIMIT);
+    assert_string_equal(report.library, "broken.mtl");
+    assert_int_equal(report.line, 3);
+    assert_int_equal(s.opened, s.closed);
+    s.books = books;
     for (size_t at = 1; at < strlen(books[1]); at++) { /* every library fails at every byte */
         static const char good[] = "mtllib a.mtl\n" THREE "usemtl red\n" F;
         from = source_of(good, strlen(good), SIZE_MAX);

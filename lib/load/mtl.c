@@ -258,7 +258,9 @@ static aset_status read_library(search *s) {
         }
         if (begins) {
             status = aset_reader_rest(reader, name, sizeof name, &length);
-            open_material(s, name);
+            if (status == ASET_OK) {
+                open_material(s, name);
+            }
         } else if (reader->starts_line) {
             status = read_line(s);
         } else {
@@ -330,9 +332,9 @@ static aset_status search_line(search *s, const char *names, aset_load_report *r
 
 aset_status aset_mtl_find(aset_mtl *mtl, const char *name, aset_material *material, bool *found, aset_load_report *report) {
     search s;
+    memset(&s, 0, sizeof s); /* a library may set what belongs to no material */
     s.mtl = mtl;
     s.name = hash_of(name);
-    s.found = false;
     aset_named_material *e = entry_for(mtl, s.name, false);
     if (e == NULL || e->used == 0) {
         aset_status status = ASET_OK;

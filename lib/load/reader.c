@@ -260,6 +260,7 @@ aset_status aset_reader_rest(aset_reader *reader, char *text, size_t size, size_
             continue;
         }
         if (n + 1 >= size) {
+            text[*length] = '\0';
             return aset_reader_fail(reader, ASET_ERR_LIMIT, "a name too long to be kept", NULL);
         }
         text[n++] = (char)byte;
