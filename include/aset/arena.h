@@ -30,6 +30,9 @@ typedef enum aset_category {
 #define ASET_ALIGN 8u
 #define ASET_ROUND(bytes) (((size_t)(bytes) + (ASET_ALIGN - 1u)) / ASET_ALIGN * ASET_ALIGN)
 
+/* The same of more bytes than a size_t may hold. */
+#define ASET_ROUND_64(bytes) (((uint64_t)(bytes) + (ASET_ALIGN - 1u)) / ASET_ALIGN * ASET_ALIGN)
+
 /* Declares a static, aligned block of at least bytes bytes, for aset_arena_init(&arena, name, sizeof name). */
 #define ASET_ARENA_BLOCK(name, bytes) uint64_t name[((size_t)(bytes) + 7u) / 8u]
 

@@ -84,11 +84,11 @@ typedef struct aset_space_size {
 
 /* Bytes of the marks: the map of blocks with a rank for each word; for each non-empty block its 64 marks and its rank. */
 #define ASET_BYTES_CELLS(nx, ny, nz, faces, blocks)                                                                    \
-    (ASET_ROUND(12u * ASET_BLOCK_WORDS(nx, ny, nz, faces)) + ASET_ROUND(12u * (uint64_t)(blocks)))
+    (ASET_ROUND_64(12u * ASET_BLOCK_WORDS(nx, ny, nz, faces)) + ASET_ROUND_64(12u * (uint64_t)(blocks)))
 
 /* Bytes of the references: where each block's begin, one bit for each (set where a cell begins), and the object numbers. */
 #define ASET_BYTES_REFERENCES(blocks, references, objects)                                                             \
-    (ASET_ROUND(4u * (uint64_t)(blocks)) + ASET_BYTES_PACKED(references, 1u) +                                         \
+    (ASET_ROUND_64(4u * (uint64_t)(blocks)) + ASET_BYTES_PACKED(references, 1u) +                                       \
      ASET_BYTES_PACKED(references, ASET_WIDTH(objects)))
 
 /*
@@ -111,10 +111,11 @@ typedef struct aset_space_size {
     ((size_t)(ASET_BYTES_CELLS(nx, ny, nz, 1u, blocks) + ASET_BYTES_REFERENCES(blocks, references, objects) +          \
               ASET_ROUND((uint64_t)(objects) * sizeof(aset_box))))
 
-/* References of the leaves that are not empty, and every object's box. */
-#define ASET_BYTES_LEAVES(leaves, references, objects)                                                                 \
-    ((size_t)(ASET_ROUND(4u * ((uint64_t)(leaves) + 1u)) + ASET_BYTES_PACKED(references, ASET_WIDTH(objects)) +        \
-              ASET_ROUND((uint64_t)(objects) * sizeof(aset_box))))
+/* References of the leaves that are not empty, and every object's box; as they are, and as a size. */
+#define ASET_BYTES_LEAVES_64(leaves, references, objects)                                                              \
+    (ASET_ROUND_64(4u * ((uint64_t)(leaves) + 1u)) + ASET_BYTES_PACKED(references, ASET_WIDTH(objects)) +              \
+     ASET_ROUND_64((uint64_t)(objects) * sizeof(aset_box)))
+#define ASET_BYTES_LEAVES(leaves, references, objects) ((size_t)ASET_BYTES_LEAVES_64(leaves, references, objects))
 
 /* Octree and ARTS: a word for each node; listed: object numbers on lists while it is built. leaves: those not empty. */
 #define ASET_BYTES_OCTREE(nodes, leaves, references, objects, listed)                                                  \

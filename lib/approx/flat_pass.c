@@ -29,9 +29,10 @@ static size_t left_of(const aset_flat *f) {
 
 /* Is there room for so many bytes? The most that is ever asked for is the least that is enough. */
 static bool fits(aset_flat *f, size_t bytes) {
-    size_t total = f->arena->used - f->mark.used + bytes + f->options.reserve;
+    uint64_t more = (uint64_t)bytes + f->options.reserve;
+    size_t total = whole_bytes(f->arena->used - f->mark.used + more);
     f->least = total > f->least ? total : f->least;
-    return aset_arena_fits(f->arena, bytes + f->options.reserve);
+    return aset_arena_fits(f->arena, whole_bytes(more));
 }
 
 /* The first pass: over divisions whose map fits. */
@@ -39,7 +40,7 @@ static aset_status begin_blocks(aset_flat *f) {
     const uint32_t *n = f->options.divisions;
     uint32_t faces = f->space.method->faces;
     f->least = 0;
-    while (!fits(f, (size_t)ASET_BYTES_CELLS(n[0], n[1], n[2], faces, 0))) {
+    while (!fits(f, whole_bytes(ASET_BYTES_CELLS(n[0], n[1], n[2], faces, 0)))) {
         f->least = 0;
         if (!f->is_auto || !aset_slices_coarsen(f->options.divisions, false)) {
             return ASET_ERR_NOMEM;
@@ -64,7 +65,7 @@ static aset_status begin_again(aset_flat *f, size_t need) {
 
 static aset_status end_blocks(aset_flat *f) {
     aset_cells_rank_blocks(&f->space.cells);
-    size_t need = ASET_ROUND(12 * (size_t)f->space.cells.n_blocks);
+    size_t need = whole_bytes(ASET_ROUND_64(12 * (uint64_t)f->space.cells.n_blocks));
     if (!fits(f, need)) {
         return begin_again(f, need);
     }
@@ -83,7 +84,8 @@ static void pack(aset_flat *f) {
     const aset_material *list = summary->textures;
     size_t list_bytes = summary->n_textures * sizeof *list;
     summary->width = summary->n_textures > 1 ? bits_width(summary->n_textures - 1) : 1;
-    aset_arena_release(f->arena, &f->work_mark);
+    f->arena->used = f->work_mark.used; /* not aset_arena_release: what is given back is read still */
+    memcpy(f->arena->used_by, f->work_mark.used_by, sizeof f->arena->used_by);
     size_t bytes = (size_t)ASET_BYTES_PACKED(n_cells, summary->width);
     summary->of_cell = aset_arena_alloc(f->arena, bytes, ASET_CATEGORY_TEXTURES);
     for (uint32_t i = 0; i < n_cells; i++) {

@@ -1,11 +1,17 @@
 /*
- * whole.h - dividing whole numbers of 64 bits. Processors of 32 bits have the compiler's library do it, by a function of 0.7 kB for
+ * whole.h - whole numbers of 64 bits: bytes that may be more than a size_t holds, and dividing. Processors of 32 bits have the compiler's library do it, by a function of 0.7 kB for
  * any two numbers; here most divisors are small.
  */
 #ifndef ASET_BASE_WHOLE_H
 #define ASET_BASE_WHOLE_H
 
+#include <stddef.h>
 #include <stdint.h>
+
+/* Bytes as a size: where a size_t does not hold them, so many that no arena has them, and still a multiple of its alignment. */
+static inline size_t whole_bytes(uint64_t bytes) {
+    return bytes < SIZE_MAX / 8 * 8 ? (size_t)bytes : SIZE_MAX / 8 * 8;
+}
 
 /* a / b, and what is left of a; b is neither 0 nor above 2^63. */
 #if UINTPTR_MAX <= UINT32_MAX

@@ -16,6 +16,7 @@
  * Invariant: counts never exceed limits, and an entity is counted only when it is complete; what an abandoned polygon wrote
  * lies behind the counted coordinates.
  */
+#include "base/whole.h"
 #include "scene/entity.h"
 #include "scene/shape.h"
 
@@ -303,7 +304,11 @@ aset_status aset_scene_init(aset_scene *scene, aset_arena *arena, const aset_cou
     if (limits->objects == UINT32_MAX || limits->coordinates >= UINT32_MAX || limits->materials > UINT32_MAX >> KIND_BITS) {
         return ASET_ERR_LIMIT;
     }
-    if (!aset_arena_fits(arena, ASET_BYTES_SCENE(limits->objects, limits->coordinates, limits->materials, limits->lights))) {
+    uint64_t bytes = ASET_ROUND_64((uint64_t)limits->objects * sizeof(aset_object)) +
+                     ASET_ROUND_64(limits->coordinates * sizeof(aset_real)) +
+                     ASET_ROUND_64((uint64_t)limits->materials * sizeof(aset_material)) +
+                     ASET_ROUND_64((uint64_t)limits->lights * sizeof(aset_light)); /* ASET_BYTES_SCENE, whatever a size_t holds */
+    if (!aset_arena_fits(arena, whole_bytes(bytes))) {
         return ASET_ERR_NOMEM;
     }
     memset(scene, 0, sizeof *scene);

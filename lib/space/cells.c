@@ -8,6 +8,8 @@
  */
 #include "space/cells.h"
 
+#include "base/whole.h"
+
 #include <string.h>
 
 /* The first and last block that a box of voxels touches, as bricks. */
@@ -156,8 +158,8 @@ aset_status aset_cells_measure(const aset_scene *scene, const aset_slices *slice
     size->n_blocks = (uint32_t)n_blocks;
     size->n_cells = (uint32_t)n_cells;
     size->n_references = (uint32_t)references;
-    size->cells = ASET_BYTES_CELLS(slices->n[0], slices->n[1], slices->n[2], faces, n_blocks);
-    size->references = ASET_BYTES_REFERENCES(n_blocks, references, scene->counts.objects);
+    size->cells = whole_bytes(ASET_BYTES_CELLS(slices->n[0], slices->n[1], slices->n[2], faces, n_blocks));
+    size->references = whole_bytes(ASET_BYTES_REFERENCES(n_blocks, references, scene->counts.objects));
     return ASET_OK;
 }
 

@@ -10,6 +10,7 @@
 #include "space/leaves.h"
 
 #include "base/bits.h"
+#include "base/whole.h"
 
 /* Of d halvings in turn, how many are along axis a. */
 static uint32_t halvings_of(uint32_t d, int a) {
@@ -69,7 +70,7 @@ static aset_status excell_measure(aset_space_size *size, const aset_scene *scene
         size->divisions[a] = 1u << halvings_of(h.deepest, a);
     }
     size->n_nodes = 1u << h.deepest;
-    size->cells = (size_t)ASET_BYTES_PACKED(size->n_nodes, ASET_WIDTH(size->n_leaves)) + ASET_ROUND(size->n_leaves);
+    size->cells = whole_bytes(ASET_BYTES_PACKED(size->n_nodes, ASET_WIDTH(size->n_leaves)) + ASET_ROUND_64(size->n_leaves));
     return ASET_OK;
 }
 

@@ -8,6 +8,7 @@
  *      | o-|-a-|-a-|-> |       grid (boxes.h), 12 bytes each, and no memory of the ray's past.
  *      +---+---+---+---+
  */
+#include "base/whole.h"
 #include "space/boxes.h"
 #include "space/lanes.h"
 #include "space/walk.h"
@@ -17,7 +18,7 @@ static aset_status grid_measure(aset_space_size *size, const aset_scene *scene, 
     aset_slices slices;
     aset_slices_make(&slices, scene, size->divisions);
     aset_status status = aset_cells_measure(scene, &slices, 1, scratch, scratch_bytes, size);
-    size->references += ASET_ROUND(scene->counts.objects * sizeof(aset_box));
+    size->references = whole_bytes((uint64_t)size->references + ASET_ROUND(scene->counts.objects * sizeof(aset_box)));
     return status;
 }
 

@@ -2,6 +2,7 @@
 #include "space/leaves.h"
 
 #include "base/bits.h"
+#include "base/whole.h"
 
 #include <string.h>
 
@@ -242,8 +243,8 @@ aset_status aset_leaves_measure(aset_space_size *size, halving *h, const aset_sc
     size->n_cells = (uint32_t)h->nonempty;
     size->n_references = (uint32_t)h->references;
     size->listed = h->listed;
-    size->references = ASET_BYTES_LEAVES(h->nonempty, h->references, n);
-    size->scratch = ASET_ROUND((size_t)h->listed * 4);
+    size->references = whole_bytes(ASET_BYTES_LEAVES_64(h->nonempty, h->references, n));
+    size->scratch = whole_bytes(ASET_ROUND_64((uint64_t)h->listed * 4));
     return ASET_OK;
 }
 

@@ -11,6 +11,7 @@
  * Where a slice is, is looked up in a table; which one a coordinate belongs to, found by halving it.
  */
 #include "base/bits.h"
+#include "base/whole.h"
 #include "space/sides.h"
 
 #include <string.h>
@@ -134,8 +135,8 @@ static aset_status set_measure(aset_space_size *size, const aset_scene *scene, u
     size_t behind = room > size->planes ? room - size->planes : 0;
     aset_status status = behind > extents ? aset_sides_measure(size, scene, &slices, planes + size->planes / 8, behind)
                                           : aset_sides_measure(size, scene, &slices, scratch, extents);
-    size_t sides = size->cells + size->references + size->voxels;
-    size->cells += size->planes;
+    size_t sides = whole_bytes((uint64_t)size->cells + size->references + size->voxels);
+    size->cells = whole_bytes((uint64_t)size->cells + size->planes);
     size->scratch = extents;
     size->reused = extents < sides ? extents : sides; /* the sides take the extents' place */
     return status;

@@ -1,5 +1,6 @@
 /* space.c - measuring and building any space; automatic divisions that fit. */
 #include "base/bits.h"
+#include "base/whole.h"
 #include "space/answers.h"
 #include "space/slices.h"
 #include "space/walk.h"
@@ -53,7 +54,7 @@ static aset_status measure_with(aset_space_size *size, const aset_scene *scene, 
         left > sizeof words
             ? method->measure(size, scene, (uint64_t *)(void *)(arena->block + arena->used), left)
             : method->measure(size, scene, words, sizeof words);
-    size->total = size->cells + size->references + size->voxels + size->scratch - size->reused;
+    size->total = whole_bytes((uint64_t)size->cells + size->references + size->voxels + size->scratch - size->reused);
     if (status == ASET_ERR_NOMEM && arena != NULL) {
         arena->missing = size->scratch > left ? size->scratch - left : 8;
     }
@@ -96,7 +97,7 @@ static aset_status measure_to_fit(aset_space_size *size, const aset_scene *scene
                                   const aset_space_options *options, aset_arena *arena, bool is_auto) {
     aset_status status = measure_with(size, scene, method, arena);
     while (is_auto && (status == ASET_ERR_NOMEM ||
-                       (status == ASET_OK && !aset_arena_fits(arena, size->total + reserved(size, options))))) {
+                       (status == ASET_OK && !aset_arena_fits(arena, whole_bytes((uint64_t)size->total + reserved(size, options)))))) {
         aset_space_size smaller = *size;
         size_t left = arena->size - arena->used;
         if (!shrink(&smaller, method, size->total / 8 > left)) {

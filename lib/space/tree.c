@@ -10,6 +10,8 @@
  */
 #include "space/tree.h"
 
+#include "base/whole.h"
+
 #include <string.h>
 
 #define LEAF 0x80000000u
@@ -50,7 +52,7 @@ aset_status aset_tree_measure(aset_space_size *size, const aset_scene *scene, ui
         return status != ASET_OK ? status : ASET_ERR_LIMIT;
     }
     size->n_nodes = (uint32_t)nodes_of(&h);
-    size->cells = ASET_ROUND((size_t)size->n_nodes * 4);
+    size->cells = whole_bytes(ASET_ROUND_64((uint64_t)size->n_nodes * 4));
     return ASET_OK;
 }
 

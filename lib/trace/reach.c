@@ -8,6 +8,7 @@
 #include "trace/reach.h"
 
 #include "approx/facet.h"
+#include "base/whole.h"
 
 #if ASET_WITH_DRAFTS
 
@@ -97,7 +98,9 @@ aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t
         return ASET_ERR_ARGUMENT;
     }
     uint32_t n_lights = draft->stage.counts.lights;
-    unsigned char *at = aset_arena_alloc(arena, ASET_BYTES_REACH(tiles, n_lights), ASET_CATEGORY_SCRATCH);
+    uint64_t bytes = ASET_ROUND_64((uint64_t)n_lights * sizeof(aset_reach_map)) +
+                     n_lights * ASET_ROUND_64((uint64_t)tiles * tiles * sizeof(aset_real)); /* ASET_BYTES_REACH, whatever a size_t holds */
+    unsigned char *at = aset_arena_alloc(arena, whole_bytes(bytes), ASET_CATEGORY_SCRATCH);
     if (at == NULL) {
         return ASET_ERR_NOMEM;
     }
