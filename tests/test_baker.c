@@ -982,6 +982,119 @@ static void test_baker__scale_does_not_matter(void **state) {
 }
 
 /* Models of hardly any size, near and far: always a draft, and one that opens. */
+#if ASET_WITH_SPHERES
+/* What a source that does not stay the same gives: spheres and lights in the first pass, and from then on. */
+typedef struct fickle {
+    int spheres[2], lights[2];
+    int *pass;
+} fickle;
+
+static aset_status fickle_emit(const aset_sink *sink, const void *context) {
+    const fickle *f = context;
+    int k = (*f->pass)++ > 0;
+    aset_material material = plain_material();
+    aset_light light;
+    memset(&light, 0, sizeof light);
+    light.position.z = 100;
+    aset_status status = sink->material(sink->context, &material);
+    for (int i = 0; i < f->lights[k] && status == ASET_OK; i++) {
+        status = sink->light(sink->context, &light);
+    }
+    for (int i = 0; i < f->spheres[k] && status == ASET_OK; i++) {
+        aset_vec3 centre = at(i % 10, i / 10, 0);
+        status = sink->sphere(sink->context, &centre, R(0.4));
+    }
+    return status;
+}
+
+static void test_baker__a_source_that_changes_is_refused(void **state) {
+    (void)state;
+    static const int spheres[][2] = {{100, 100}, {100, 0}, {100, 99}, {100, 101}, {100, 100}, {3, 3}, {3, 2}};
+    for (size_t i = 0; i < COUNT_OF(spheres); i++) { /* the last two: all are kept, or none */
+        for (int keep = 0; keep < 2; keep++) {
+            int pass = 0;
+            const fickle f = {{spheres[i][0], spheres[i][1]}, {2, i == 4 ? 1 : 2}, &pass};
+            guarded memory = guarded_open(ROOM);
+            aset_arena arena;
+            aset_draft draft;
+            aset_bake_report report;
+            aset_bake_options options = options_of(16, 16, 16);
+            options.keep_none = keep == 0;
+            assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+            aset_status status = bake_all(&draft, &report, &arena, &options, fickle_emit, &f);
+            check(status == (i == 0 || i == 5 ? ASET_OK : ASET_ERR_GEOMETRY), "source %zu, %d: %d", i, keep, (int)status);
+            check(status == ASET_OK || arena.used == 0, "source %zu, %d: %zu bytes kept", i, keep, arena.used);
+            guarded_close(&memory);
+        }
+    }
+}
+
+/* What is emitted after an end goes nowhere, least of all into memory that is somebody else's by now. */
+static void test_baker__nothing_is_written_after_an_end(void **state) {
+    (void)state;
+    for (int passes = 0; passes < 3; passes++) {
+        guarded memory = guarded_open(ROOM);
+        aset_arena arena;
+        aset_baker *baker = malloc(sizeof *baker);
+        aset_bake_options options = options_of(8, 8, 8);
+        int pass = 0;
+        fickle f = {{100, 100}, {3, 3}, &pass};
+        bool again = true;
+        aset_light light;
+        memset(&light, 0, sizeof light);
+        assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+        assert_int_equal(aset_baker_init(baker, &arena, &options), ASET_OK);
+        aset_sink sink = aset_baker_sink(baker);
+        for (int i = 0; i < passes; i++) {
+            assert_int_equal(fickle_emit(&sink, &f), ASET_OK);
+            f.lights[1] = i == 0 && passes == 2 ? 2 : 3; /* the second pass fails, then */
+            assert_int_equal(aset_baker_pass(baker, &again), i == 0 ? ASET_OK : ASET_ERR_GEOMETRY);
+        }
+        aset_baker_abandon(baker);
+        unsigned char *others = aset_arena_alloc(&arena, 65536, ASET_CATEGORY_SCRATCH);
+        memset(others, 7, 65536);
+        (void)sink.light(sink.context, &light);
+        assert_int_not_equal(sink.sphere(sink.context, &light.position, 1), ASET_OK);
+        for (int i = 0; i < 65536; i++) {
+            assert_int_equal(others[i], 7);
+        }
+        free(baker);
+        guarded_close(&memory);
+    }
+}
+
+#if ASET_REAL_BITS == 64
+/* A draft's words are floats: where these hardly tell a model's parts apart, though its own numbers do. */
+static void test_baker__far_from_the_origin_in_double(void **state) {
+    (void)state;
+    static const double places[] = {0, 1e3, 1e5, 1e7, 1e9, 1e12};
+    for (size_t i = 0; i < COUNT_OF(places); i++) {
+        guarded memory = guarded_open(ROOM);
+        aset_arena arena;
+        aset_draft draft;
+        aset_bake_report report;
+        aset_bake_options options = options_of(32, 32, 32);
+        model m;
+        model_start(&m);
+        model_sphere(&m, at(places[i] + 0.3, places[i], -places[i]), 1);
+        options.keep_none = true;
+        assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+        aset_status status = bake_all(&draft, &report, &arena, &options, model_emit, &m);
+        check(status == (places[i] < 1e6 ? ASET_OK : ASET_ERR_PRECISION), "at %g: %d", places[i], (int)status);
+        if (status == ASET_OK) {
+            for (int a = 0; a < 3; a++) {
+                double centre = a == 0 ? places[i] + 0.3 : a == 1 ? places[i] : -places[i];
+                double low = draft.low[a], high = low + draft.size[a] * 4 * draft.n[a];
+                check(low <= centre - 1 && centre + 1 <= high, "at %g: %g to %g on axis %d", places[i], low, high, a);
+            }
+        }
+        model_free(&m);
+        guarded_close(&memory);
+    }
+}
+#endif
+#endif
+
 static void test_baker__models_of_hardly_any_size(void **state) {
     (void)state;
     const double sizes[] = {0, 1e-44, 1e-38, 1e-36, 1e-30, 1e-25, 1e-14, 1e-8}, places[] = {0, 1e-30, 1, 1e14};
@@ -1159,6 +1272,13 @@ int main(void) {
         cmocka_unit_test(test_baker__a_source_that_fails_leaves_nothing),
         cmocka_unit_test(test_baker__scale_does_not_matter),
         cmocka_unit_test(test_baker__models_of_hardly_any_size),
+#if ASET_WITH_SPHERES
+        cmocka_unit_test(test_baker__a_source_that_changes_is_refused),
+        cmocka_unit_test(test_baker__nothing_is_written_after_an_end),
+#if ASET_REAL_BITS == 64
+        cmocka_unit_test(test_baker__far_from_the_origin_in_double),
+#endif
+#endif
         cmocka_unit_test(test_baker__materials_of_any_size),
 #if ASET_WITH_POLYGONS
         cmocka_unit_test(test_baker__triangles_are_checked),

@@ -617,6 +617,54 @@ static void test_draft__odd_rays(void **state) {
     model_free(&m);
 }
 
+/* A component of -0 is one of 0: in a ray, alone or in a beam, and towards a light. */
+static void test_draft__zeros_of_either_sign(void **state) {
+    (void)state;
+    static const aset_real zeros[2] = {0, R(-0.0)};
+    static unsigned char pixels[4][SIDE * SIDE * 4];
+    random_state r = random_start(seed_of(345));
+    model m;
+    drawn d;
+    aset_statistics counts[4];
+    aset_light light;
+    memset(counts, 0, sizeof counts);
+    memset(&light, 0, sizeof light);
+    model_of(&m, &r, 150, false);
+    bake(&d, &m, 12, 12, 12, true);
+    aset_tracer tracer = tracer_of(&d.draft);
+    int met[2] = {0, 0}, blocked[2] = {0, 0};
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < 900; i++) {
+            aset_ray ray = {{(aset_real)(i % 30 - 15) / 4, -30, (aset_real)(i / 30 - 15) / 4}, {zeros[k], 1, zeros[k]}, REAL_INFINITY};
+            aset_hit hit;
+            bool closest, any;
+            assert_int_equal(aset_closest_hit(&closest, &hit, &tracer, &ray, true, NULL), ASET_OK);
+            assert_int_equal(aset_any_hit(&any, &tracer, &ray, true, NULL), ASET_OK);
+            met[k] += closest;
+            blocked[k] += any;
+        }
+    }
+    check(met[0] > 100 && met[0] == met[1] && blocked[0] > 100 && blocked[0] == blocked[1],
+          "of 900 rays %d and %d meet something, %d and %d are blocked", met[0], met[1], blocked[0], blocked[1]);
+    for (int k = 0; k < 4; k++) { /* a parallel view along y, a light along z; ray by ray, then by beams */
+        aset_scene lit = d.draft.stage;
+        light.directional = true;
+        light.position = vec(zeros[k & 1], zeros[k & 1], 1);
+        lit.lights = &light;
+        lit.counts.lights = 1;
+        tracer.scene = &lit;
+        aset_view view = view_from(vec(zeros[k & 1], -30, zeros[k & 1]));
+        view.at = vec(zeros[k & 1], 0, 0);
+        view.up = vec(zeros[k & 1], zeros[k & 1], 1);
+        view.height = 10;
+        assert_int_equal(draw_with(pixels[k], SIDE, tracer, &view, (aids){k < 2 ? 0 : 4000, 0}, false, &counts[k]), ASET_OK);
+        check(memcmp(pixels[0], pixels[k], sizeof pixels[0]) == 0 && counts[k].shadow_hit == counts[0].shadow_hit, "picture %d", k);
+    }
+    check(counts[0].shadow_hit > 50, "%" PRIu64 " shadow rays are stopped", counts[0].shadow_hit);
+    drawn_close(&d);
+    model_free(&m);
+}
+
 #if ASET_WITH_SPHERES
 /* From very far a ball is still met, as long as the ray itself says so to within the ball. */
 static void test_draft__rays_from_far_away(void **state) {
@@ -780,6 +828,81 @@ static void test_draft__beams_and_reach_change_no_picture(void **state) {
         model_free(&m);
     }
     check(looked_at * 10 < walked * 9, "%" PRIu64 " of %" PRIu64 " cells looked at", looked_at, walked); /* they are of use */
+}
+
+/* A tracer's scene may have its lights elsewhere than the draft, and more of them. */
+static void test_draft__a_reach_helps_its_own_lights_alone(void **state) {
+    (void)state;
+    static unsigned char plain[SIDE * SIDE * 4], aided[SIDE * SIDE * 4];
+    for (uint64_t i = 0; i < 8; i++) {
+        random_state r = random_start(seed_of(700 + i));
+        aset_light lights[6];
+        model m;
+        drawn d;
+        aset_statistics a = {0}, b = {0};
+        model_of(&m, &r, 150, false);
+        bake(&d, &m, 16, 16, 16, true);
+        aset_scene other = d.draft.stage;
+        memset(lights, 0, sizeof lights);
+        for (int k = 0; k < 6; k++) {
+            lights[k].directional = k % 2 == (int)(i % 2);
+            lights[k].position = vec_scale(random_direction(&r), lights[k].directional ? 1 : 30);
+        }
+        other.lights = lights;
+        other.counts.lights = 1 + (uint32_t)i % 6;
+        aset_tracer tracer = tracer_of(&d.draft);
+        tracer.scene = &other;
+        aset_view view = any_view(&r, i * 2);
+        assert_int_equal(draw_with(plain, SIDE, tracer, &view, (aids){0, 0}, false, &a), ASET_OK);
+        assert_int_equal(draw_with(aided, SIDE, tracer, &view, (aids){4000, 48}, false, &b), ASET_OK);
+        check(memcmp(plain, aided, sizeof plain) == 0, SEED, r.seed);
+        check_same(&a, &b, r.seed);
+        drawn_close(&d);
+        model_free(&m);
+    }
+}
+
+/* Cells of unlike sizes on the axes, seen from about where single rays begin nearer to them; and from the box's very face. */
+static void test_draft__beams_from_far_away_and_from_a_face(void **state) {
+    (void)state;
+    static unsigned char plain[SIDE * SIDE * 4], aided[SIDE * SIDE * 4];
+    static const uint32_t divisions[][3] = {{64, 16, 16}, {8, 7, 15}, {2, 1, 3}, {1, 1, 1}, {17, 17, 17}};
+    for (uint64_t i = 0; i < 60; i++) {
+        random_state r = random_start(seed_of(800 + i));
+        const uint32_t *n = divisions[i % COUNT_OF(divisions)];
+        model m;
+        drawn d;
+        aset_statistics a = {0}, b = {0};
+        model_of(&m, &r, 100, false);
+        bake(&d, &m, n[0], n[1], n[2], true);
+        aset_tracer tracer = tracer_of(&d.draft);
+        aset_vec3 out = random_direction(&r), middle;
+        aset_real *from = &middle.x, longest = 0;
+        for (int k = 0; k < 3; k++) {
+            aset_real side = d.draft.size[k] * 4 * (aset_real)n[k];
+            from[k] = d.draft.low[k] + side / 2;
+            longest = real_max(longest, side);
+        }
+        aset_view view = view_from(vec_along(middle, longest * (aset_real)random_between(&r, 20, 110), out));
+        view.at = middle;
+        view.angle_deg = R(1.5);
+        if (i >= 40) { /* looking out, or in, from a face */
+            int axis = (int)(i % 3);
+            aset_vec3 there = middle;
+            *(axis == 0 ? &there.x : axis == 1 ? &there.y : &there.z) =
+                i % 2 == 0 ? d.draft.low[axis] : d.draft.low[axis] + d.draft.size[axis] * 4 * (aset_real)n[axis];
+            view = view_from(there);
+            view.up = vec(R(0.3), R(0.5), R(0.8));
+            view.at = i % 4 < 2 ? middle : vec_along(there, 1, vec_sub(there, middle));
+            view.height = i % 8 < 4 ? longest : 0;
+        }
+        assert_int_equal(draw_with(plain, SIDE, tracer, &view, (aids){0, 0}, false, &a), ASET_OK);
+        assert_int_equal(draw_with(aided, SIDE, tracer, &view, (aids){8000, 0}, false, &b), ASET_OK);
+        check(memcmp(plain, aided, sizeof plain) == 0, SEED, r.seed);
+        check_same(&a, &b, r.seed);
+        drawn_close(&d);
+        model_free(&m);
+    }
 }
 
 static void test_draft__beams_follow_the_draft_and_the_view(void **state) {
@@ -990,12 +1113,15 @@ int main(void) {
         cmocka_unit_test(test_draft__any_agrees_with_closest),
         cmocka_unit_test(test_draft__shadow_rays_ignore_the_voxel_that_they_start_in),
         cmocka_unit_test(test_draft__odd_rays),
+        cmocka_unit_test(test_draft__zeros_of_either_sign),
 #if ASET_WITH_SPHERES
         cmocka_unit_test(test_draft__rays_from_far_away),
 #endif
         cmocka_unit_test(test_draft__without_a_space_all_rays_must_be_approximate),
         cmocka_unit_test(test_draft__beside_a_space),
         cmocka_unit_test(test_draft__beams_and_reach_change_no_picture),
+        cmocka_unit_test(test_draft__a_reach_helps_its_own_lights_alone),
+        cmocka_unit_test(test_draft__beams_from_far_away_and_from_a_face),
         cmocka_unit_test(test_draft__beams_follow_the_draft_and_the_view),
         cmocka_unit_test(test_draft__beams_are_of_one_picture),
         cmocka_unit_test(test_draft__beams_and_reach_refuse),

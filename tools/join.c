@@ -157,7 +157,6 @@ static bool piece_open(piece *p, const char *path) {
         tool_error(path, 0, "cannot open it: %s", strerror(errno));
         return false;
     }
-    (void)tool_input_note(p->file, path); /* the output is opened when all pieces are */
     int first = getc(p->file);
     bool opened;
     if (first == EOF) {

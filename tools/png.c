@@ -447,7 +447,6 @@ bool tool_image_read(tool_image *image, const char *path) {
         tool_error(path, 0, "cannot open it: %s", strerror(errno));
         return false;
     }
-    (void)tool_input_note(source.file, path); /* no output is open while pictures are read */
     int first = getc(source.file);
     if (first == EOF) {
         source_error(&source, ferror(source.file) != 0 ? strerror(errno) : "the file is empty");

@@ -79,6 +79,7 @@ typedef struct aset_baker {
     int phase;
     aset_status failure;
     bool single, has_material, is_other, counting;
+    uint64_t taken; /* objects in this pass */
     aset_material material, only;
     uint32_t n_materials;
     aset_real largest[ASET_KEPT_MAX + 1]; /* squared diagonals of the largest objects, in descending order */
@@ -93,7 +94,7 @@ typedef struct aset_baker {
     uint64_t *marks;
     unsigned char *region, *after, *bins;
     uint32_t *keys;
-    size_t region_bytes, bins_bytes, bin_bytes;
+    size_t region_bytes, bin_bytes;
     uint32_t capacity, n_bins;
     void *recent[6]; /* what each side found last, and under which key */
     uint32_t recent_keys[6];
@@ -131,9 +132,11 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
 #endif
 
 /*
- * Ends a pass. *again: the source is wanted once more. ASET_ERR_NOMEM: arena->missing more bytes will do; ASET_ERR_GEOMETRY: the
- * source gave no object, or other ones than in the first pass; ASET_ERR_LIMIT: over 10^9 layers of surface in one voxel. After an
- * error the arena is as before the bake.
+ * Ends a pass. *again: the source is wanted once more. ASET_ERR_NOMEM: arena->missing tells the bytes that this pass lacked (at
+ * least 1, too, where options.bytes is what is too small); a later one may lack others. ASET_ERR_GEOMETRY: the source gave no object,
+ * or not as many objects, kept ones or lights as in the first pass; ASET_ERR_LIMIT: over 10^9 layers of surface in one voxel;
+ * ASET_ERR_PRECISION, in double: between the ends of what the cells hold lie fewer than 64 of the floats that a draft's words are
+ * made of, for the model is small and far from the origin. After an error the arena is as before the bake.
  */
 aset_status aset_baker_pass(aset_baker *baker, bool *again);
 

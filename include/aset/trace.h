@@ -37,7 +37,7 @@ typedef struct aset_tracer {
     bool curtail_more;
 #endif
     uint32_t depth;   /* rays in a chain, the eye ray being 1; 0 means 5 */
-    uint32_t samples; /* n for n x n rays a pixel; 0 means 1: one ray through the pixel's centre */
+    uint32_t samples; /* n for n x n rays a pixel, up to 64; 0 means 1: one ray through the pixel's centre */
     bool spd_rules;   /* the SPD testing procedure (Haines 1987): rays through pixel corners, so a picture of w x h has
                          (w + 1) x (h + 1) of them, and a reflected ray from every reflecting or transmitting surface */
 } aset_tracer;
@@ -50,7 +50,8 @@ typedef struct aset_tracer {
  * draft on what covers most of the ray: a facet, whose number is hit->cell and whose material, by aset_draft_texture, is
  * not pointed to; or a kept object, with its number in draft->stage).
  * *found says whether there is one; hit is written only then. An approximate query without a summary, a ray with a number
- * that is not finite (t_max may be INFINITY) or without direction: ASET_ERR_ARGUMENT. Adds to *statistics unless it is NULL.
+ * that is not finite (t_max may be INFINITY), without direction, or with one whose length is beyond all numbers: ASET_ERR_ARGUMENT.
+ * Adds to *statistics unless it is NULL.
  */
 aset_status aset_closest_hit(bool *found, aset_hit *hit, const aset_tracer *tracer, const aset_ray *ray,
                              bool approximate, aset_statistics *statistics);
@@ -127,7 +128,7 @@ typedef struct aset_picture {
  * Draws the rows first_row to first_row + n_rows - 1 of the picture that view shows. Colours are clamped to 0..1, times 255,
  * rounded, without gamma; of several samples each is clamped, then they are averaged. The same rows come out whichever
  * thread draws them. Under spd_rules the picture has width + 1 columns and height + 1 rows. ASET_ERR_ARGUMENT: a row outside
- * the picture, no scratch, a view that cannot be (see aset_view); ASET_ERR_STOPPED.
+ * the picture, no scratch, too many samples; ASET_ERR_GEOMETRY: a view that cannot be (see aset_view); ASET_ERR_STOPPED.
  */
 aset_status aset_render_rows(const aset_tracer *tracer, const aset_view *view, const aset_picture *picture,
                              uint32_t first_row, uint32_t n_rows, aset_scratch *scratch, aset_statistics *statistics);

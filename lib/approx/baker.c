@@ -156,6 +156,7 @@ static aset_status take_polygon_end(void *context) {
     if (status != ASET_OK) {
         return status;
     }
+    b->taken++;
     if (b->phase == PHASE_MEASURE) {
         measure(b, outline->low, outline->high, n);
     } else if (is_kept(b, outline->low, outline->high, n)) {
@@ -184,6 +185,7 @@ static aset_status measure_triangle(aset_baker *b, const aset_real *x) {
     box_of(x, &low, &high);
     if (b->phase == PHASE_FIT && !is_kept(b, low, high, 3)) {
         fit(b, low, high);
+        b->taken++;
         return ASET_OK;
     }
     return take_triangle(b, x);
@@ -211,6 +213,7 @@ static bool measure_chunk(aset_baker *b, const aset_real *x, size_t n) {
     }
     fit(b, low, high);
     b->report.objects += n;
+    b->taken += n;
     b->max_points = b->max_points > 3 ? b->max_points : 3;
     for (size_t i = 0; i < n; i++) {
         if (b->n_largest <= ASET_KEPT_MAX || diagonals[i] > b->largest[ASET_KEPT_MAX]) {
@@ -245,6 +248,7 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
     }
     if (baker->n_kept == 0) {
         aset_sheet_triangles(baker, coordinates, n);
+        baker->taken += n;
         return ASET_OK;
     }
     for (size_t i = 0; i < n && status == ASET_OK; i++, coordinates += 9) {
@@ -254,6 +258,7 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
             status = take_triangle(baker, coordinates);
         } else {
             aset_sheet_triangle(baker, coordinates);
+            baker->taken++;
         }
     }
     return status;
@@ -275,6 +280,7 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
     if (status != ASET_OK) {
         return status;
     }
+    b->taken++;
     if (b->phase == PHASE_MEASURE) {
         measure(b, low, high, 1);
     } else if (is_kept(b, low, high, 1)) {
@@ -304,6 +310,7 @@ static aset_status take_cone(void *context, const aset_vec3 *base, aset_real bas
     if (status != ASET_OK) {
         return status;
     }
+    b->taken++;
     if (b->phase == PHASE_MEASURE) {
         measure(b, low, high, 1);
     } else if (is_kept(b, low, high, 1)) {

@@ -41,7 +41,7 @@ typedef struct bin {
 
 #define BIN_BYTES_SINGLE offsetof(bin, parts)
 
-/* A raw facet: footprint 16, height 6, slopes 6 and 6, side 3, first of its voxel 1, texture above. */
+/* A raw facet: footprint 16, then height and two slopes, 5 bits and one to spare each, side 3, first of its voxel 1, texture above. */
 enum { RAW_HEIGHT = 16, RAW_SLOPE_U = 22, RAW_SLOPE_V = 28, RAW_SIDE = 34, RAW_FIRST = 37, RAW_TEXTURE = 38 };
 
 static inline bin *baker_bin(const aset_baker *baker, uint32_t slot) {

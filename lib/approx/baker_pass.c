@@ -4,6 +4,8 @@
  */
 #include "approx/baker.h"
 
+#include "base/whole.h"
+
 #if ASET_WITH_DRAFTS
 
 /* An object is kept exact if its box's diagonal is at least this part of the scene's. */
@@ -51,15 +53,24 @@ static void choose_divisions(aset_baker *b, size_t bytes, uint32_t longest_max) 
     }
 }
 
-/* The box of what the cells hold, a little larger, in numbers that the words can say. */
-static void place_cells(aset_baker *b) {
+/* Rounding of the words' floats, whatever a real is here. */
+#define WORD_UNIT R(5.9604644775390625e-8)
+/* The least steps between neighbouring floats for a model whose reals tell its parts apart. */
+#define STEPS_LEAST 64
+
+/* The box of what the cells hold, a little larger, in numbers that the words can say. False: they can't. */
+static bool place_cells(aset_baker *b) {
     aset_vec3 low = b->low, high = b->high;
     if (b->n_materials == 0) { /* all objects are kept */
         low = high = vec(0, 0, 0);
     }
     aset_vec3 extent = vec_sub(high, low);
-    aset_real slack = R(1e-3) * vec_largest(extent) + 16 * REAL_UNIT * real_max(vec_largest(low), vec_largest(high));
-    slack = slack > LEAST_SLACK ? slack : vec_largest(extent) > 0 ? LEAST_SLACK : 1;
+    aset_real size = vec_largest(extent), largest = real_max(vec_largest(low), vec_largest(high));
+    if (size >= STEPS_LEAST * 2 * REAL_UNIT * largest && size < STEPS_LEAST * 2 * WORD_UNIT * largest) {
+        return false;
+    }
+    aset_real slack = R(1e-3) * size + 16 * WORD_UNIT * largest;
+    slack = slack > LEAST_SLACK ? slack : size > 0 ? LEAST_SLACK : 1;
     for (int a = 0; a < 3; a++) {
         aset_real grown = vec_at(&extent, a) + 2 * slack / 16;
         b->origin[a] = float_of_word(word_of_float(vec_at(&low, a) - slack / 16));
@@ -67,6 +78,7 @@ static void place_cells(aset_baker *b) {
         b->scale[a] = 1 / b->size[a];
         b->blocks[a] = (b->n[a] + 3) / 4;
     }
+    return true;
 }
 
 static size_t fixed_bytes(const aset_baker *b) {
@@ -143,7 +155,9 @@ static aset_status start_baking(aset_baker *b, size_t wanted, uint32_t longest_m
     b->bin_bytes = ASET_ROUND(b->single ? BIN_BYTES_SINGLE : sizeof(bin));
     b->texture_capacity = b->single ? 1 : TEXTURES_MAX;
     choose_divisions(b, room, longest_max);
-    place_cells(b);
+    if (!place_cells(b)) {
+        return ASET_ERR_PRECISION;
+    }
     if (wanted == 0) {
         wanted = b->options.bytes > 0 ? room : ASET_BYTES_BAKE(b->n[0], b->n[1], b->n[2]);
     }
@@ -212,6 +226,11 @@ static aset_status end_measuring(aset_baker *b) {
         b->phase = PHASE_FAILED;
         return ASET_ERR_GEOMETRY;
     }
+    size_t most = whole_bytes((uint64_t)b->max_points * 64);
+    if (most / 64 < b->max_points) { /* a polygon that this machine's addresses do not hold */
+        b->arena->missing = most;
+        return ASET_ERR_NOMEM;
+    }
     choose_kept(b);
     if (b->n_kept == 0) {
         return start_stage(b);
@@ -231,6 +250,11 @@ static aset_status end_measuring(aset_baker *b) {
 }
 
 static aset_status end_baking(aset_baker *b) {
+    const aset_scene *stage = &b->stage;
+    if (b->stage_sink.context == stage &&
+        (stage->counts.lights != stage->limits.lights || stage->counts.objects != stage->limits.objects)) {
+        return ASET_ERR_GEOMETRY;
+    }
     if (b->failure == ASET_ERR_NOMEM) {
         return bake_again(b, need_at_most(b));
     }
@@ -280,12 +304,20 @@ aset_status aset_baker_init(aset_baker *baker, aset_arena *arena, const aset_bak
     return ASET_OK;
 }
 
+/* Objects that still come are refused, and nothing is kept of what else does. */
+static void end_taking(aset_baker *b) {
+    b->failure = ASET_ERR_ARGUMENT;
+    b->stage_sink = aset_counter_sink(&b->counter);
+}
+
 aset_status aset_baker_pass(aset_baker *baker, bool *again) {
     aset_status status = ASET_ERR_ARGUMENT;
     if (baker == NULL || again == NULL) {
         return status;
     }
     baker->counter.outline.open = false;
+    bool is_same = baker->phase == PHASE_MEASURE || baker->taken == baker->report.objects;
+    baker->taken = 0;
     switch (baker->phase) {
     case PHASE_MEASURE: status = end_measuring(baker); break;
     case PHASE_FIT:
@@ -297,12 +329,15 @@ aset_status aset_baker_pass(aset_baker *baker, bool *again) {
     default: *again = false; return status; /* whatever it had is no longer ours to release */
     }
     baker->report.passes++;
+    if (status == ASET_OK && !is_same) {
+        status = ASET_ERR_GEOMETRY; /* nor is the first pass's box theirs */
+    }
     if (status != ASET_OK) {
         aset_arena_release(baker->arena, &baker->mark);
         baker->phase = PHASE_FAILED;
     }
     if (baker->phase == PHASE_FAILED || baker->phase == PHASE_DONE) {
-        baker->failure = ASET_ERR_ARGUMENT; /* of every entity that still comes */
+        end_taking(baker);
     }
     *again = status == ASET_OK && baker->phase != PHASE_DONE;
     return status;
@@ -314,7 +349,7 @@ void aset_baker_abandon(aset_baker *baker) {
     }
     aset_arena_release(baker->arena, &baker->mark);
     baker->phase = PHASE_FAILED;
-    baker->failure = ASET_ERR_ARGUMENT;
+    end_taking(baker);
 }
 
 #endif

@@ -12,14 +12,12 @@
 #define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
 
 static void set_axis(draft_beam *b, int a, int i, aset_real origin, aset_real direction) {
-    aset_real o = (origin - b->draft->low[a]) * b->draft->per_size[a], d = direction * b->draft->per_size[a];
-    bool turned = d < 0;
-    aset_real inverse = 1 / (turned ? -d : d);
-    b->o[a][i] = o;
-    b->d[a][i] = d;
-    b->turned[a][i] = turned ? R(1) : R(0);
-    b->from[a][i] = turned ? -o : o;
-    b->inverse[a][i] = inverse < REAL_MAX ? inverse : REAL_MAX;
+    draft_axis x = draft_axis_of(b->draft, a, origin, direction);
+    b->o[a][i] = x.o;
+    b->d[a][i] = x.d;
+    b->turned[a][i] = x.turned ? R(1) : R(0);
+    b->from[a][i] = x.from;
+    b->inverse[a][i] = x.inverse;
 }
 
 void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, const aset_vec3 *origins, const aset_vec3 *directions,

@@ -21,10 +21,7 @@
 typedef struct way {
     const aset_draft *draft;
     aset_real o[3], d[3];
-    /*
-     * The same turned so that it goes up on every axis: the walks know no other rays. -x for x where d is below 0, which is exact;
-     * inverse: 1 / |d|, the largest number where the ray stands still, so that its next crossing is never near.
-     */
+    /* The same turned so that it goes up on every axis: the walks know no other rays. */
     aset_real from[3], rise[3], inverse[3];
     bool turned[3];
     aset_real t_max, t_own;
@@ -287,16 +284,12 @@ static inline bool clip(const way *w, entry *e) {
     return e->t <= t_out && e->t < w->t_last;
 }
 
-/* A box's size so often: from farther away the rounding of o + t d would be seen. */
-#define FAR R(64)
-
 /* Brings a ray that comes from far away near the box, and clips it again: what is left of it is short. */
 static bool clip_near(way *w, entry *e) {
-    const uint32_t *n = w->draft->n;
-    aset_real size = w->draft->column * (aset_real)(int32_t)(4 * (n[0] + n[1] + n[2]));
+    aset_real far = draft_far(w->draft);
     bool meets = clip(w, e);
-    for (int i = 0; i < 3 && meets && e->t > FAR * size; i++) {
-        aset_real step = e->t - size;
+    for (int i = 0; i < 3 && meets && e->t > far; i++) {
+        aset_real step = e->t - far / 64;
         for (int a = 0; a < 3; a++) {
             w->o[a] += step * w->d[a];
             w->from[a] = w->turned[a] ? -w->o[a] : w->o[a];
@@ -340,20 +333,18 @@ static bool go(way *w) {
     return false;
 }
 
-static inline void way_set_axis(way *w, int a, aset_real o, aset_real d) {
-    bool turned = d < 0;
-    aset_real rise = turned ? -d : d, inverse = 1 / rise;
-    w->o[a] = o;
-    w->d[a] = d;
-    w->turned[a] = turned;
-    w->from[a] = turned ? -o : o;
-    w->rise[a] = rise;
-    w->inverse[a] = inverse < REAL_MAX ? inverse : REAL_MAX;
+static inline void way_set_axis(way *w, int a, aset_real origin, aset_real direction) {
+    draft_axis x = draft_axis_of(w->draft, a, origin, direction);
+    w->o[a] = x.o;
+    w->d[a] = x.d;
+    w->turned[a] = x.turned;
+    w->from[a] = x.from;
+    w->rise[a] = x.rise;
+    w->inverse[a] = x.inverse;
 }
 
 static inline void way_make(way *w, const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction,
                             aset_real t_max, aset_real t_last, draft_layer *layers) {
-    const aset_real *low = draft->low, *per_size = draft->per_size;
     w->draft = draft;
     w->mode = mode;
     w->t_max = t_max;
@@ -363,9 +354,9 @@ static inline void way_make(way *w, const aset_draft *draft, draft_mode mode, as
     w->any = layers == NULL;
     w->cover = draft_cover_of(layers);
     w->counts.cells = w->counts.nonempty = 0;
-    way_set_axis(w, 0, (origin.x - low[0]) * per_size[0], direction.x * per_size[0]);
-    way_set_axis(w, 1, (origin.y - low[1]) * per_size[1], direction.y * per_size[1]);
-    way_set_axis(w, 2, (origin.z - low[2]) * per_size[2], direction.z * per_size[2]);
+    way_set_axis(w, 0, origin.x, direction.x);
+    way_set_axis(w, 1, origin.y, direction.y);
+    way_set_axis(w, 2, origin.z, direction.z);
 }
 
 uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,

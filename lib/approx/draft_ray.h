@@ -40,6 +40,33 @@ uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draf
 bool aset_draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                        aset_real t_last, draft_counts *counts);
 
+/*
+ * A ray on one axis, in columns. Turned so that it goes up: from is -o where d is below 0, which is exact, rise |d|, and inverse 1 / |d|,
+ * the largest number where the ray stands still (d may be -0), so that its next crossing is never near. What beams and single rays
+ * must agree on.
+ */
+typedef struct draft_axis {
+    aset_real o, d, from, rise, inverse;
+    bool turned;
+} draft_axis;
+
+static inline draft_axis draft_axis_of(const aset_draft *draft, int a, aset_real origin, aset_real direction) {
+    draft_axis x;
+    x.o = (origin - draft->low[a]) * draft->per_size[a];
+    x.d = direction * draft->per_size[a];
+    x.turned = x.d < 0;
+    x.from = x.turned ? -x.o : x.o;
+    x.rise = real_abs(x.d);
+    x.inverse = 1 / x.rise;
+    x.inverse = x.inverse < REAL_MAX ? x.inverse : REAL_MAX;
+    return x;
+}
+
+/* From so far on the rounding of o + t d would be seen: such rays are brought near first. */
+static inline aset_real draft_far(const aset_draft *draft) {
+    return R(64) * draft->column * (aset_real)(int32_t)(4 * (draft->n[0] + draft->n[1] + draft->n[2]));
+}
+
 /* How far from the surface, along its normal, rays start that are to meet the draft; shadow rays a third of that (trace/shade.c). */
 aset_real aset_draft_clearance(const aset_draft *draft);
 

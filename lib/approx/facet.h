@@ -17,7 +17,7 @@
  *   first          of each such block: the number of its first facet
  *   starts         a bit for each facet: is it its voxel's first? One more bit, set, ends them
  *   facets         a number of a surface, a number of a footprint, a height, packed; two words of padding
- *   surfaces       side 3 bits, slopes 6 and 6, texture 17: in ascending order, each once
+ *   surfaces       side 3 bits, slopes 5 and 5, texture 19: in ascending order, each once
  *   footprints     16 bits each, in ascending order, each once
  *   textures       8 floats each: fill, Kd, Ks, shine, T, index of refraction
  *   lights, kept   the stage

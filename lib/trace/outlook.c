@@ -1,6 +1,8 @@
 /* outlook.c - the cells' box, and the numbers that all voxels' outlines share. */
 #include "trace/outlook.h"
 
+#include "approx/draft_ray.h"
+
 #if ASET_WITH_DRAFTS
 
 #define NEAREST R(0.001)     /* of the box's diagonal: so far before the eye all of it must lie */
@@ -17,6 +19,7 @@ outlook_cells aset_outlook_cells_of(const aset_draft *draft) {
     c.column = draft->column;
     c.half = vec_add(vec_add(c.half, c.voxel), vec(c.column, c.column, c.column));
     c.diagonal = 2 * aset_vec_length(c.half);
+    c.far = draft_far(draft) - c.diagonal;
     return c;
 }
 
@@ -51,8 +54,8 @@ bool aset_outlook_can_see(const aset_outlook *o, const outlook_cells *cells) {
     aset_real thinnest = real_min(voxel.x, real_min(voxel.y, voxel.z));
     /* a narrow enough angle, and places on the picture would leave the range of numbers */
     aset_real farthest = 16 * (vec_largest(way) + cells->diagonal) * real_max(vec_largest(o->across), vec_largest(o->down));
-    return aset_vec_length(way) < OUTLOOK_FAR * cells->diagonal && thinnest > rounding_at(o, cells) && real_finite(farthest) &&
-           (o->parallel || before > NEAREST * cells->diagonal);
+    return aset_vec_length(way) < real_min(OUTLOOK_FAR * cells->diagonal, cells->far) && thinnest > rounding_at(o, cells) && real_finite(farthest) &&
+           before > (o->parallel ? 0 : NEAREST * cells->diagonal);
 }
 
 #endif

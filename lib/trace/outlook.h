@@ -24,6 +24,7 @@
 typedef struct outlook_cells {
     aset_vec3 low, middle, half, voxel; /* half: grown by more than a voxel */
     aset_real diagonal, column;
+    aset_real far; /* single rays that meet the box from farther than this begin elsewhere (draft_far) */
 } outlook_cells;
 
 typedef struct outlook_rectangle {

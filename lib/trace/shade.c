@@ -44,10 +44,23 @@ aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction, aset_real clea
     return vec_along(s->hit.point, vec_dot(direction, s->facing) < 0 ? -off : off, s->facing);
 }
 
+#if ASET_WITH_DRAFTS
+/* Was the reach made for this very light? A tracer's scene may have other ones than the draft's stage. */
+static bool reaches(const aset_tracer *tracer, uint32_t light) {
+    const aset_scene *stage = &tracer->draft->stage;
+    if (tracer->reach == NULL || tracer->reach->draft != tracer->draft || light >= stage->counts.lights) {
+        return false;
+    }
+    const aset_light *own = stage->lights + light, *asked = tracer->scene->lights + light;
+    return own->directional == asked->directional && own->position.x == asked->position.x &&
+           own->position.y == asked->position.y && own->position.z == asked->position.z;
+}
+#endif
+
 /* Where on the shadow ray to light number light nothing of the draft is left ahead. */
 static aset_real last_before(const aset_tracer *tracer, const shading *s, uint32_t light, const light_ray *towards) {
 #if ASET_WITH_DRAFTS
-    if (tracer->reach != NULL && tracer->reach->draft == tracer->draft) {
+    if (reaches(tracer, light)) {
         return tracer->reach->calls->last(tracer->reach, light, s->hit.point, real_max(s->clearance, s->nudge), towards);
     }
 #endif

@@ -179,8 +179,9 @@ aset_status aset_ray_colour(aset_colour *colour, const aset_tracer *tracer, cons
     if (status != ASET_OK || colour == NULL || ray == NULL) {
         return ASET_ERR_ARGUMENT;
     }
-    aset_vec3 direction = aset_vec_unit(ray->direction);
-    if (!vec_finite(ray->origin) || !vec_finite(ray->direction) || !(vec_largest(direction) > 0)) {
+    aset_real length;
+    aset_vec3 direction = aset_vec_unit_length(ray->direction, &length);
+    if (!vec_finite(ray->origin) || !vec_finite(ray->direction) || !real_finite(length) || !(length > 0)) {
         return ASET_ERR_ARGUMENT;
     }
     memset(&ignored, 0, sizeof ignored);
