@@ -118,7 +118,7 @@ int memcmp(const void *a, const void *b, size_t n) {
 END
 common="-std=c99 -Os -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables -fvisibility=hidden -Iinclude -Ilib"
 core="lib/base/*.c lib/scene/*.c lib/space/*.c lib/approx/*.c lib/trace/*.c"
-lto="-flto -flto-partition=one -fno-ipa-cp"
+lto="-flto -flto-partition=one -fno-ipa-cp -fno-move-loop-invariants -fno-schedule-insns2"
 m4="-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16"
 m0="-mcpu=cortex-m0plus -mthumb -mfloat-abi=soft"
 arm_link="--specs=nano.specs -nostartfiles -Wl,--gc-sections,-emain"
