@@ -316,8 +316,8 @@ bench-walk: $(BUILD)/tests/bench_walk ## what the generic walk costs MSET agains
 prices: $(BUILD)/aset ## the README's price list: bytes, time, dB
 	@bash tools/prices.sh $(BUILD)/aset $(BUILD)/prices
 
-pictures: hp9000 ## draw the pictures of the docs anew
-	@mkdir -p docs
+pictures: hp9000 ## draw docs/first.png and docs/snow.png anew (methods.png: make methods; drafts.png: make ladder)
+	@bash tools/pictures.sh $(BUILD)/aset $(BUILD)/pictures docs/first.png
 	cp $(BUILD)/hp9000/snow-30.png docs/snow.png
 
 # --- installing ---

@@ -1,4 +1,4 @@
-/* smallest.c - a whole program: a scene in code, 64 kB of static memory, an approximate picture on standard output (PPM). */
+/* smallest.c - a whole program: a scene in code, 9 kB of static memory, an approximate picture on standard output (PPM). */
 #include <aset/aset.h>
 
 #include <stdio.h>
@@ -13,7 +13,7 @@
         }                                                                                                              \
     } while (0)
 
-static ASET_ARENA_BLOCK(block, 64 * 1024);
+static ASET_ARENA_BLOCK(block, 9 * 1024 * sizeof(aset_real) / sizeof(float));
 static unsigned char row[SIDE * 3];
 
 static int write_row(void *context, uint32_t y, const void *pixels) {

@@ -2,7 +2,7 @@
  * mpi_render.c - one picture by many processes: rank 0 deals rows from a queue and collects them, all others draw.
  *
  *     mpirun -n 8 mpi_render SCENE.nff OUT.ppm [WIDTHxHEIGHT]      exact, the bytes of aset render SCENE.nff -o OUT.ppm
- *     mpirun -n 8 mpi_render MODEL.draft OUT.ppm [WIDTHxHEIGHT]    a draft that aset bake made, of 50 to 520 kB
+ *     mpirun -n 8 mpi_render MODEL.draft OUT.ppm [WIDTHxHEIGHT]    a draft that aset bake made, of 26 to 520 kB
  *
  * Rank 0 alone reads the file and hands its bytes to all, so no shared folder is needed. Rows are dealt in runs that become
  * shorter towards the end (guided self-scheduling, Polychronopoulos and Kuck 1987: the rest by twice the ranks), so a slow rank
