@@ -289,7 +289,7 @@ int main(int argc, char **argv) {
     printf("\n");
     for (unsigned c = 1; c < CONTENDERS; c++) {
         double loss = 1 - exp(sum.logs[c] / sum.n);
-        printf("Rays a second lost by the robust tests against %s: %.1f %% (geometric mean of %u rows; at most %.0f %%).\n",
+        printf("Rays a second lost by the robust tests against %s: %.1f %% (geometric mean of %u rows; the limit is %.0f %%).\n",
                contender_names[c], 100 * loss, sum.n, 100 * LOSS_MOST);
         fine = fine && loss <= LOSS_MOST;
     }
