@@ -47,8 +47,11 @@ aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction, aset_real clea
 #if ASET_WITH_DRAFTS
 /* Was the reach made for this very light? A tracer's scene may have other ones than the draft's stage. */
 static bool reaches(const aset_tracer *tracer, uint32_t light) {
+    if (tracer->reach == NULL || tracer->draft == NULL || tracer->reach->draft != tracer->draft) {
+        return false;
+    }
     const aset_scene *stage = &tracer->draft->stage;
-    if (tracer->reach == NULL || tracer->reach->draft != tracer->draft || light >= stage->counts.lights) {
+    if (light >= stage->counts.lights) {
         return false;
     }
     const aset_light *own = stage->lights + light, *asked = tracer->scene->lights + light;
