@@ -267,6 +267,12 @@ static void test_obj__errors_of_libraries(void **state) {
     assert_int_equal(report.vertices, 3);
     assert_string_equal(report.token, "x");
     assert_int_equal(s.opened, s.closed);
+    static const char joined[] = "mtllib e.mtl \\\n  a.mtl\n" THREE "usemtl  \\\r\n red\n" F;
+    expect_log(aset_load_obj, joined, strlen(joined), true, &options, RED ONE_LOG, 0); /* lines joined within names */
+    char padded[600] = "mtllib a.mtl\n" THREE "usemtl red"; /* blanks behind a name are none of it, however many */
+    memset(padded + strlen(padded), ' ', 400);
+    memcpy(padded + strlen(padded), "\n" F, sizeof "\n" F);
+    expect_log(aset_load_obj, padded, strlen(padded), true, &options, RED ONE_LOG, 0);
     char names[400] = "d 0.5\nKd 1 0 0\nnewmtl "; /* what belongs to no material; a name that is too long */
     const char *const own[] = {"broken.mtl", names, NULL};
     memset(names + strlen(names), 'x', 300);

@@ -29,10 +29,9 @@ static size_t left_of(const aset_flat *f) {
 
 /* Is there room for so many bytes? The most that is ever asked for is the least that is enough. */
 static bool fits(aset_flat *f, size_t bytes) {
-    uint64_t more = (uint64_t)bytes + f->options.reserve;
-    size_t total = whole_bytes(f->arena->used - f->mark.used + more);
+    size_t more = whole_bytes_sum(bytes, f->options.reserve), total = whole_bytes_sum(f->arena->used - f->mark.used, more);
     f->least = total > f->least ? total : f->least;
-    return aset_arena_fits(f->arena, whole_bytes(more));
+    return aset_arena_fits(f->arena, more);
 }
 
 /* The first pass: over divisions whose map fits. */

@@ -101,7 +101,7 @@ static uint64_t time_units(double seconds, unsigned decimals) {
     uint64_t bits, most_bits; /* numbers that are not negative are in the order of their bits; the others lie above */
     memcpy(&bits, &seconds, sizeof bits);
     memcpy(&most_bits, &most, sizeof most_bits);
-    if (bits >= most_bits) {
+    if (bits > most_bits) {
         return 0;
     }
     uint64_t mantissa = (bits & ((UINT64_C(1) << 52) - 1)) | UINT64_C(1) << 52;
@@ -116,7 +116,7 @@ static uint64_t time_units(double seconds, unsigned decimals) {
     for (; decimals > 0; decimals--) {
         units *= 10;
     }
-    return seconds > 0 && seconds < most ? (uint64_t)(units + 0.5) : 0;
+    return seconds > 0 && seconds <= most ? (uint64_t)(units + 0.5) : 0;
 #endif
 }
 

@@ -13,6 +13,11 @@ static inline size_t whole_bytes(uint64_t bytes) {
     return bytes < SIZE_MAX / 8 * 8 ? (size_t)bytes : SIZE_MAX / 8 * 8;
 }
 
+/* The same of two sizes together. */
+static inline size_t whole_bytes_sum(size_t a, size_t b) {
+    return a <= SIZE_MAX / 8 * 8 - (b < SIZE_MAX / 8 * 8 ? b : SIZE_MAX / 8 * 8) ? a + b : SIZE_MAX / 8 * 8;
+}
+
 /* a / b, and what is left of a; b is neither 0 nor above 2^63. */
 #if UINTPTR_MAX <= UINT32_MAX
 uint64_t aset_whole_divide(uint64_t a, uint64_t b, uint64_t *rest);

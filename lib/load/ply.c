@@ -234,6 +234,11 @@ static aset_status get_corner(ply *file, uint32_t index, aset_corner *corner) {
     return ASET_OK;
 }
 
+static aset_real mean_of(aset_real a, aset_real b, aset_real c) {
+    aset_real sum = a + b + c;
+    return sum - sum == 0 ? sum / 3 : a / 3 + b / 3 + c / 3; /* the sum may be beyond all numbers, the mean not */
+}
+
 /* Corner number n of a face goes to the fan; from the third on, each makes a triangle. */
 static aset_status add_corner(ply *file, uint32_t n, uint32_t index) {
     aset_corner *c = file->corners;
@@ -245,9 +250,9 @@ static aset_status add_corner(ply *file, uint32_t n, uint32_t index) {
         return status;
     }
     if (file->vertex_colours) {
-        const aset_colour mean = {(c[0].colour.r + c[1].colour.r + c[2].colour.r) / 3,
-                                  (c[0].colour.g + c[1].colour.g + c[2].colour.g) / 3,
-                                  (c[0].colour.b + c[1].colour.b + c[2].colour.b) / 3};
+        const aset_colour mean = {mean_of(c[0].colour.r, c[1].colour.r, c[2].colour.r),
+                                  mean_of(c[0].colour.g, c[1].colour.g, c[2].colour.g),
+                                  mean_of(c[0].colour.b, c[1].colour.b, c[2].colour.b)};
         aset_model_fill(&file->model, &mean);
     }
     return aset_model_triangle(&file->model, &c[0], &c[1], &c[2]);
@@ -356,7 +361,7 @@ static aset_status check_end(ply *file) {
             return status;
         }
         for (size_t i = 0; i < n; i++) {
-            if (bytes[i] != 0 && bytes[i] != ' ' && bytes[i] != '\n' && bytes[i] != '\r') {
+            if (bytes[i] != 0 && bytes[i] != ' ' && bytes[i] != '\t' && bytes[i] != '\n' && bytes[i] != '\r') {
                 reader->token_offset = reader->offset + i;
                 return ply_fail(file, what, "the end");
             }

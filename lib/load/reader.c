@@ -243,10 +243,15 @@ aset_status aset_reader_skip_line(aset_reader *reader) {
 
 aset_status aset_reader_rest(aset_reader *reader, char *text, size_t size, size_t *length) {
     size_t n = 0; /* bytes so far, blanks at the end too, without which they are *length */
+    bool full = false; /* blanks have found no room: it is the end, or the name is too long */
     *length = 0;
     for (;;) {
         int byte = -1, last = -1;
         aset_status status = look_text(reader, &byte);
+        bool joint = false;
+        if (status == ASET_OK && byte >= 0 && byte == reader->joiner) {
+            status = take_joint(reader, &joint);
+        }
         const bool comment = byte == reader->comment && (n == 0 || n > *length);
         if (status == ASET_OK && byte >= 0 && comment) {
             status = skip_to_line_end(reader, &last);
@@ -255,11 +260,16 @@ aset_status aset_reader_rest(aset_reader *reader, char *text, size_t size, size_
             text[*length] = '\0';
             return status;
         }
-        take(reader, byte);
-        if (is_blank(byte) && n == 0) {
+        if (joint) {
+            byte = ' ';
+        } else {
+            take(reader, byte);
+        }
+        if (is_blank(byte) && (n == 0 || n + 1 >= size)) {
+            full = n > 0;
             continue;
         }
-        if (n + 1 >= size) {
+        if (full || n + 1 >= size) {
             text[*length] = '\0';
             return aset_reader_fail(reader, ASET_ERR_LIMIT, "a name too long to be kept", NULL);
         }

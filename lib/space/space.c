@@ -76,7 +76,7 @@ static size_t reserved(const aset_space_size *size, const aset_space_options *op
     if (options == NULL) {
         return 0;
     }
-    return options->reserve + (options->textures > 0 ? ASET_BYTES_SUMMARY(size->n_cells, options->textures) : 0);
+    return whole_bytes_sum(options->reserve, options->textures > 0 ? ASET_BYTES_SUMMARY(size->n_cells, options->textures) : 0);
 }
 
 /* One step coarser, a large one if the need is far off. False: nothing is coarser. */
@@ -97,7 +97,7 @@ static aset_status measure_to_fit(aset_space_size *size, const aset_scene *scene
                                   const aset_space_options *options, aset_arena *arena, bool is_auto) {
     aset_status status = measure_with(size, scene, method, arena);
     while (is_auto && (status == ASET_ERR_NOMEM ||
-                       (status == ASET_OK && !aset_arena_fits(arena, whole_bytes((uint64_t)size->total + reserved(size, options)))))) {
+                       (status == ASET_OK && !aset_arena_fits(arena, whole_bytes_sum(size->total, reserved(size, options)))))) {
         aset_space_size smaller = *size;
         size_t left = arena->size - arena->used;
         if (!shrink(&smaller, method, size->total / 8 > left)) {
