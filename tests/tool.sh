@@ -920,6 +920,14 @@ outputs_that_are_taken() {
             [ $status -eq 1 ] && cmp -s a.nff before || fail "aset $words: status $status, or the scene is gone"
         done
     done
+    printf 'mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n' >m.obj
+    printf 'newmtl m\nKd 1 0 0\n' >m.mtl
+    cp m.mtl library
+    for words in "render m.obj -s 8 --stats m.mtl" "render m.obj -s 8 --png -o m.mtl" "plan m.obj -s 8 --header m.mtl" "bake m.obj -o m.mtl"; do
+        # shellcheck disable=SC2086
+        tool $words
+        cmp -s m.mtl library || fail "aset $words: the library is gone"
+    done
     tool render a.nff -s 8x8 -o a.png --stats sub/../a.png
     refused 1 "aset: a.png: "
     cmp -s a.png b.png || fail "a picture is gone"
@@ -945,6 +953,15 @@ words_of_render_elsewhere() {
     cp a.obj 'a*/b.obj'
     works plan 'a*/b.obj' -s 16 --header plan.h
     ! grep -qF 'a*/b' plan.h || fail "a path ends the comment that it stands in"
+}
+
+# What nothing exact fits in, and no pixel differs in, is planned all the same; a scene too large for a draft has other rows.
+plan_and_info_at_the_edges() {
+    works plan "$scenes/tetra.nff" -s 32 --memory 4000 --from 0,0,100 --at 0,0,200 --up 0,1,0
+    printf 'v\nfrom 0 0 1e21\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 8 8\nf 1 1 1 1 0 1 0 1\ns 0 0 0 1e20\n' >huge.nff
+    works info huge.nff
+    grep -q '^draft *none: ' "$out" || fail "info of a huge scene: $(tail -n 1 "$out")"
+    works "$scenes/balls.nff" a.png -m octree --octree-depth 4 -s 8
 }
 
 # A tree's depth is 6 unless said otherwise, and never less in silence.
@@ -1196,7 +1213,7 @@ bad_announced_but_missing_points bad_order bad_views bad_objects bad_camera_opti
 scene_text_is_read_freely budget_exact budget_approximate flat_is_streamed budget_of_two_threads budget_is_what_info_says
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
 scene_into_render compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
-full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere tree_depth_is_kept old_output interrupted progress_bar
+full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere plan_and_info_at_the_edges tree_depth_is_kept old_output interrupted progress_bar
 trade_table trade_best_marks trade_says_what_render_says trade_of_a_model trade_resumes trade_page trade_refuses
 "
 # shellcheck disable=SC2086

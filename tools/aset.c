@@ -77,7 +77,9 @@ static int run_short(int argc, char **argv) {
         return TOOL_FAILED;
     }
     for (int i = 2; i < argc; i++) {
-        if (strncmp(argv[i], "-o", 2) == 0 || strncmp(argv[i], "--o", 3) == 0) {
+        size_t length = strcspn(argv[i], "=");
+        bool is_long = length > 2 && length <= strlen("--output") && strncmp(argv[i], "--output", length) == 0;
+        if (strncmp(argv[i], "-o", 2) == 0 || is_long) {
             tool_error(NULL, 0, "%s: the picture goes to %s already, expected no %s", argv[0], argv[1], argv[i]);
             free(words);
             return TOOL_USAGE;

@@ -283,7 +283,7 @@ aset_status tool_bake(tool_baking *baking, tool_source *source, const aset_bake_
     aset_baker_abandon(&baker);
     baking->build_s += tool_seconds() - start;
     baking->report = baker.report;
-    if (status == ASET_ERR_GEOMETRY && baker.report.objects == 0) {
+    if (status == ASET_ERR_GEOMETRY && baker.report.objects == 0 && baker.report.passes == 1) { /* the pass was ended: nothing was refused */
         tool_error(source->path, 0, "there is no object in it, expected one at least for a draft");
         baking->told = true;
     }

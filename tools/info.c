@@ -140,6 +140,9 @@ static bool print_draft(tool_source *source, const aset_space_options *options) 
                      report.facets, report.voxels, report.textures, report.kept, arena.peak, report.passes);
     } else if (status == ASET_ERR_ARGUMENT) { /* the divisions */
         (void)printf("draft       at most %u divisions\n", ASET_BAKE_DIVISIONS_MAX);
+    } else if (status == ASET_ERR_GEOMETRY || status == ASET_ERR_PRECISION) {
+        (void)printf("draft       none: %s\n", aset_status_text(status));
+        status = ASET_OK;
     } else if (status != ASET_ERR_READ) {
         tool_error(source->path, 0, "draft: %s", aset_status_text(status));
     }

@@ -3,8 +3,8 @@
  *
  * open: FOLDER/.aset-XXXXXX  --write-->  close: rename to FOLDER/NAME      failure, signal: unlink
  *
- * A file that is read, or that another output becomes, is no place for an output: it would be lost. What has been read is
- * remembered by device and number, where an output goes by its folder's and the name in it.
+ * A scene, model or draft that is read, or a file that another output becomes, is no place for an output: it would be lost. What has
+ * been read is remembered by device and number, where an output goes by its folder's and the name in it.
  *
  * Invariant: places[i].used is set exactly while the file named in places[i].temporary is ours and not yet renamed or
  * removed. The handler of signals reads only that table. Between a rename and the clearing of used it may unlink a
@@ -240,6 +240,11 @@ bool tool_input_note(FILE *stream, const char *path) {
         if (place->used && place->old.st_ino != 0 && same_file(&place->old, &status)) {
             tool_error(path, 0, "the output goes there, too, expected another file for it");
             return false;
+        }
+    }
+    for (unsigned i = 0; i < INPUTS && i < n_inputs; i++) {
+        if (same_file(&inputs[i], &status)) {
+            return true;
         }
     }
     inputs[n_inputs++ % INPUTS] = status;

@@ -25,7 +25,7 @@ static const char help[] =
     "\n"
     "Bytes are exact. Times and PSNR are expected from a sample of the picture's rays; time is said as the ratio to the exact\n"
     "picture by MSET at automatic divisions. Settings are MSET, grid and SET with up to 5 numbers of divisions\n"
-    "each, more where none of them fits, and at last brute force; exact, and with --error or --time, or where nothing exact\n"
+    "each, more where none of them fits (then a large scene may take some seconds), and at last brute force; exact, and with --error or --time, or where nothing exact\n"
     "fits, also approximate in three ways. Those that fit are probed for about a second, the finest first.\n";
 
 typedef struct request {
@@ -67,6 +67,11 @@ static bool tell(const request *r, const plan *p, const measured *m) {
     void (*print)(const plan *p, const plan_setting *s) = r->json ? print_json : print_setting;
     for (int i = 0; i < p->n && r->all; i++) {
         print(p, &p->settings[i]);
+    }
+    if (p->chosen < 0 && p->least_bytes <= r->wish.memory) {
+        tool_error(r->scene, 0, "nothing exact fits, and of no approximate setting could the error be told, expected more memory than %zu bytes",
+                   p->exact_bytes);
+        return false;
     }
     if (p->chosen < 0) {
         tool_error(r->scene, 0, "the picture needs %zu bytes, has %" PRIu64, p->least_bytes, r->wish.memory);

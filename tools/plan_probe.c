@@ -342,8 +342,8 @@ static void probe_levels(plan *p, probing *q, const built *b, const aset_method 
         if (i > 0) {
             add_errors(&e, q);
             s->psnr = psnr_of(&e);
-            /* not drawn to the end, or not seen to differ: its error is not known */
-            q->refused[p->n] = seconds > LONG_SECONDS || e.squares <= 0;
+            /* not drawn to the end, or not seen to differ: its error is not known, which matters only if there is a choice */
+            q->refused[p->n] = (seconds > LONG_SECONDS || e.squares <= 0) && p->exact_bytes <= q->wish->memory;
         }
         p->n++;
     }

@@ -233,7 +233,7 @@ static bool check_request(const request *r) {
         tool_error(NULL, 0, "--cells: drafts of %s are flat, expected --method mset or grid", aset_method_name(s->method));
         return false;
     }
-    if (s->cells != CELLS_FLAT && (grid[0] > ASET_BAKE_DIVISIONS_MAX || grid[1] > ASET_BAKE_DIVISIONS_MAX || grid[2] > ASET_BAKE_DIVISIONS_MAX)) {
+    if (s->cells != CELLS_FLAT && s->approx_kinds != 0 && (grid[0] > ASET_BAKE_DIVISIONS_MAX || grid[1] > ASET_BAKE_DIVISIONS_MAX || grid[2] > ASET_BAKE_DIVISIONS_MAX)) {
         tool_error(NULL, 0, "--grid: too many divisions for a draft, expected at most %u, or --cells flat", ASET_BAKE_DIVISIONS_MAX);
         return false;
     }

@@ -106,6 +106,7 @@ typedef struct shelf {
     const char *path; /* of the OBJ, in whose folder the libraries lie */
     char missing[64]; /* the last name that could not be opened, and why */
     int error;
+    bool is_taken; /* an output would replace one, which has been told */
 } shelf;
 
 /* Only what is a plain file: a folder cannot be read, and a device may never end. */
@@ -124,6 +125,12 @@ static bool open_library(void *context, const char *name, aset_read *read, void 
             errno = S_ISDIR(status.st_mode) ? EISDIR : EINVAL;
             file = S_ISREG(status.st_mode) ? fopen(path, "rb") : NULL;
         }
+    }
+    if (file != NULL && !tool_input_note(file, path)) {
+        (void)fclose(file);
+        file = NULL;
+        errno = EBUSY;
+        s->is_taken = true;
     }
     if (file == NULL) {
         s->error = errno;
@@ -243,7 +250,7 @@ static bool load_with(tool_source *source, const aset_sink *sink, void *window) 
                                         aset_load_report *) = {aset_load_nff, aset_load_obj, aset_load_stl, aset_load_ply};
     aset_named_material materials[N_MATERIALS];
     spill file = {NULL, 0};
-    shelf libraries = {source->path, "", 0};
+    shelf libraries = {source->path, "", 0, false};
     aset_vertex_store store = {window, window != NULL ? WINDOW_BYTES : 0, spill_write, spill_read, &file};
     aset_library library = {open_library, close_library, &libraries};
     aset_material material = aset_stage_material();
@@ -270,7 +277,7 @@ static bool load_with(tool_source *source, const aset_sink *sink, void *window) 
     if (file.file != NULL) {
         (void)fclose(file.file);
     }
-    return status == ASET_OK;
+    return status == ASET_OK && !libraries.is_taken;
 }
 
 static bool load(tool_source *source, const aset_sink *sink) {

@@ -115,9 +115,9 @@ typedef struct tool_output {
 /* For main, once: signals remove the temporaries, a closed pipe or a file limit is a failed write and not the end. */
 void tool_output_guard(void);
 
-/* Refuses, besides what cannot be written, files that have been read and where another open output goes. */
+/* Refuses, besides what cannot be written, files that tool_input_note was told of and where another open output goes. */
 bool tool_output_open(tool_output *output, const char *path);
-/* Of a file that was opened for reading: no output shall replace it. False after an error line: one is about to. */
+/* Of a scene, model or draft that was opened for reading: no output shall replace it. False after an error line: one is about to. */
 bool tool_input_note(FILE *stream, const char *path);
 /* Writes size bytes. False after an error line, now or at an earlier write. */
 bool tool_output_write(tool_output *output, const void *bytes, size_t size);

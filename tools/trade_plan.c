@@ -122,9 +122,9 @@ static uint64_t hash_look(uint64_t hash, const settings *s) {
                  {s->has_up, &s->up, sizeof s->up},             {s->has_angle, &s->angle_deg, sizeof s->angle_deg},
                  {s->has_up_axis, &s->up_axis, sizeof s->up_axis}, {s->has_ground, &s->ground, sizeof s->ground},
                  {s->smooth, &s->smooth, sizeof s->smooth}};
-    for (unsigned char i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+    for (uint32_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         if (parts[i].is_given) {
-            hash = hash_bytes(hash_bytes(hash, &i, 1), parts[i].value, parts[i].size);
+            hash = hash_bytes(hash_bytes(hash, &i, sizeof i), parts[i].value, parts[i].size);
         }
     }
     return hash;

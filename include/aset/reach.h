@@ -4,7 +4,7 @@
  * Most shadow rays leave the model and cross empty cells until they are out of its box. A reach projects the draft's marked voxels,
  * once, onto a square of tiles before each light, and keeps for every tile the distance of the one nearest to the light (as
  * the light buffer of Haines and Greenberg 1986 keeps objects): there a shadow ray may stop. The picture is the same bit for bit,
- * and so are all counts but those of empty cells. Lights of a tracer's scene that are not where the draft's are get no help from it.
+ * and so are all counts but those of empty cells. Lights of a tracer's scene that are not where the draft's were when it was made get no help from it.
  */
 #ifndef ASET_REACH_H
 #define ASET_REACH_H
@@ -25,6 +25,8 @@ typedef struct aset_outlook {
 /* Private: the tiles before one light. */
 typedef struct aset_reach_map {
     aset_outlook outlook;
+    aset_vec3 position; /* the light's, or the direction to it */
+    bool directional;
     aset_real *near; /* for each tile, row by row; infinity: nothing */
     uint32_t tiles;  /* on a side; 0: no map, rays are walked whole */
 } aset_reach_map;
@@ -34,7 +36,8 @@ struct aset_reach_calls;
 typedef struct aset_reach {
     const struct aset_reach_calls *calls;
     const aset_draft *draft;
-    aset_reach_map *lights; /* one for each of draft->stage */
+    aset_reach_map *lights; /* one for each of draft->stage, */
+    uint32_t n_lights;      /* as they were then */
 } aset_reach;
 
 /* Most tiles on a side of a map; 64 are enough for 64 divisions. */

@@ -225,7 +225,7 @@ aset_status aset_leaves_measure(aset_space_size *size, halving *h, const aset_sc
     aset_slices slices;
     uint32_t n = scene->counts.objects;
     size_t boxes_bytes = ASET_ROUND((size_t)n * sizeof(aset_box));
-    size->scratch = boxes_bytes + ASET_ROUND((size_t)n * 4 * (h->depth + 1)); /* enough for any scene */
+    size->scratch = whole_bytes(boxes_bytes + ASET_ROUND_64((uint64_t)n * 4 * (h->depth + 1))); /* enough for any scene */
     if (scratch_bytes < boxes_bytes) {
         return ASET_ERR_NOMEM;
     }

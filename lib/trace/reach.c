@@ -108,10 +108,13 @@ aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t
     reach->calls = &calls;
     reach->draft = draft;
     reach->lights = (aset_reach_map *)(void *)at;
+    reach->n_lights = n_lights;
     at += ASET_ROUND((size_t)n_lights * sizeof(aset_reach_map));
     for (uint32_t i = 0; i < n_lights; i++, at += ASET_ROUND((size_t)tiles * tiles * sizeof(aset_real))) {
         aset_reach_map *map = reach->lights + i;
         look_from(&map->outlook, draft->stage.lights + i, &cells);
+        map->position = draft->stage.lights[i].position;
+        map->directional = draft->stage.lights[i].directional;
         map->near = (aset_real *)(void *)at;
         map->tiles = aset_outlook_can_see(&map->outlook, &cells) ? tiles : 0;
         if (map->tiles > 0) {

@@ -46,24 +46,21 @@ aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction, aset_real clea
 
 #if ASET_WITH_DRAFTS
 /* Was the reach made for this very light? A tracer's scene may have other ones than the draft's stage. */
-static bool reaches(const aset_tracer *tracer, uint32_t light) {
-    if (tracer->reach == NULL || tracer->draft == NULL || tracer->reach->draft != tracer->draft) {
+static bool reaches(const aset_reach *reach, const aset_tracer *tracer, uint32_t light) {
+    if (reach == NULL || reach->draft != tracer->draft || light >= reach->n_lights) {
         return false;
     }
-    const aset_scene *stage = &tracer->draft->stage;
-    if (light >= stage->counts.lights) {
-        return false;
-    }
-    const aset_light *own = stage->lights + light, *asked = tracer->scene->lights + light;
-    return own->directional == asked->directional && own->position.x == asked->position.x &&
-           own->position.y == asked->position.y && own->position.z == asked->position.z;
+    const aset_reach_map *map = reach->lights + light;
+    const aset_light *asked = tracer->scene->lights + light;
+    return map->directional == asked->directional && map->position.x == asked->position.x &&
+           map->position.y == asked->position.y && map->position.z == asked->position.z;
 }
 #endif
 
 /* Where on the shadow ray to light number light nothing of the draft is left ahead. */
 static aset_real last_before(const aset_tracer *tracer, const shading *s, uint32_t light, const light_ray *towards) {
 #if ASET_WITH_DRAFTS
-    if (reaches(tracer, light)) {
+    if (reaches(tracer->reach, tracer, light)) {
         return tracer->reach->calls->last(tracer->reach, light, s->hit.point, real_max(s->clearance, s->nudge), towards);
     }
 #endif
