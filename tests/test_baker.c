@@ -1124,13 +1124,20 @@ static void test_baker__models_of_hardly_any_size(void **state) {
 #endif
         }
         if (m.n_things > 0) {
-            bake_model(&b, &m, &options);
-            check_opens(&b.draft);
-            for (int a = 0; a < 3; a++) {
-                check(real_finite(b.draft.per_size[a]) && b.draft.size[a] > 0, "size %g at %g", size, place);
+            b.memory = guarded_open(ROOM);
+            assert_int_equal(aset_arena_init(&b.arena, b.memory.block, ROOM), ASET_OK);
+            aset_status status = bake_all(&b.draft, &b.report, &b.arena, &options, model_emit, &m);
+            /* in double a model may have an extent of its own that a draft's floats do not tell */
+            bool lost = ASET_REAL_BITS == 64 && size > 0 && size < 1e-4 * place && status == ASET_ERR_PRECISION;
+            check(status == ASET_OK || lost, "size %g at %g: %d", size, place, (int)status);
+            if (status == ASET_OK) {
+                check_opens(&b.draft);
+                for (int a = 0; a < 3; a++) {
+                    check(real_finite(b.draft.per_size[a]) && b.draft.size[a] > 0, "size %g at %g", size, place);
+                }
+                aset_hit hit;
+                (void)look(&hit, &b.draft, at(place * 2 + 2 * size + 1, place, place), at(place, place, place));
             }
-            aset_hit hit;
-            (void)look(&hit, &b.draft, at(place * 2 + 2 * size + 1, place, place), at(place, place, place));
             bake_close(&b);
         }
         model_free(&m);
