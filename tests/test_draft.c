@@ -830,16 +830,23 @@ static void test_draft__beams_and_reach_change_no_picture(void **state) {
     check(looked_at * 10 < walked * 9, "%" PRIu64 " of %" PRIu64 " cells looked at", looked_at, walked); /* they are of use */
 }
 
+static void check_aids_change_nothing(const aset_tracer *tracer, const aset_view *view, aids with, uint64_t seed) {
+    static unsigned char plain[SIDE * SIDE * 4], aided[SIDE * SIDE * 4];
+    aset_statistics a = {0}, b = {0};
+    assert_int_equal(draw_with(plain, SIDE, *tracer, view, (aids){0, 0}, false, &a), ASET_OK);
+    assert_int_equal(draw_with(aided, SIDE, *tracer, view, with, false, &b), ASET_OK);
+    check(memcmp(plain, aided, sizeof plain) == 0, SEED, seed);
+    check_same(&a, &b, seed);
+}
+
 /* A tracer's scene may have its lights elsewhere than the draft, and more of them. */
 static void test_draft__a_reach_helps_its_own_lights_alone(void **state) {
     (void)state;
-    static unsigned char plain[SIDE * SIDE * 4], aided[SIDE * SIDE * 4];
     for (uint64_t i = 0; i < 8; i++) {
         random_state r = random_start(seed_of(700 + i));
         aset_light lights[6];
         model m;
         drawn d;
-        aset_statistics a = {0}, b = {0};
         model_of(&m, &r, 150, false);
         bake(&d, &m, 16, 16, 16, true);
         aset_scene other = d.draft.stage;
@@ -853,10 +860,7 @@ static void test_draft__a_reach_helps_its_own_lights_alone(void **state) {
         aset_tracer tracer = tracer_of(&d.draft);
         tracer.scene = &other;
         aset_view view = any_view(&r, i * 2);
-        assert_int_equal(draw_with(plain, SIDE, tracer, &view, (aids){0, 0}, false, &a), ASET_OK);
-        assert_int_equal(draw_with(aided, SIDE, tracer, &view, (aids){4000, 48}, false, &b), ASET_OK);
-        check(memcmp(plain, aided, sizeof plain) == 0, SEED, r.seed);
-        check_same(&a, &b, r.seed);
+        check_aids_change_nothing(&tracer, &view, (aids){4000, 48}, r.seed);
         drawn_close(&d);
         model_free(&m);
     }
@@ -865,14 +869,12 @@ static void test_draft__a_reach_helps_its_own_lights_alone(void **state) {
 /* Cells of unlike sizes on the axes, seen from about where single rays begin nearer to them; and from the box's very face. */
 static void test_draft__beams_from_far_away_and_from_a_face(void **state) {
     (void)state;
-    static unsigned char plain[SIDE * SIDE * 4], aided[SIDE * SIDE * 4];
     static const uint32_t divisions[][3] = {{64, 16, 16}, {8, 7, 15}, {2, 1, 3}, {1, 1, 1}, {17, 17, 17}};
     for (uint64_t i = 0; i < 60; i++) {
         random_state r = random_start(seed_of(800 + i));
         const uint32_t *n = divisions[i % COUNT_OF(divisions)];
         model m;
         drawn d;
-        aset_statistics a = {0}, b = {0};
         model_of(&m, &r, 100, false);
         bake(&d, &m, n[0], n[1], n[2], true);
         aset_tracer tracer = tracer_of(&d.draft);
@@ -896,10 +898,7 @@ static void test_draft__beams_from_far_away_and_from_a_face(void **state) {
             view.at = i % 4 < 2 ? middle : vec_along(there, 1, vec_sub(there, middle));
             view.height = i % 8 < 4 ? longest : 0;
         }
-        assert_int_equal(draw_with(plain, SIDE, tracer, &view, (aids){0, 0}, false, &a), ASET_OK);
-        assert_int_equal(draw_with(aided, SIDE, tracer, &view, (aids){8000, 0}, false, &b), ASET_OK);
-        check(memcmp(plain, aided, sizeof plain) == 0, SEED, r.seed);
-        check_same(&a, &b, r.seed);
+        check_aids_change_nothing(&tracer, &view, (aids){8000, 0}, r.seed);
         drawn_close(&d);
         model_free(&m);
     }

@@ -117,9 +117,9 @@ typedef struct aset_baker {
  *     } while (status == ASET_OK && again);
  *     status = aset_baker_finish(&draft, baker);
  *
- * Where the source fails, or an entity is refused, aset_baker_abandon(baker). The source must give the same entities each time. The first pass measures,
- * further ones bake: two in all for most models, one more if objects are kept exact, and more where memory is short. options may be
- * NULL. ASET_ERR_ARGUMENT: divisions out of range.
+ * Where the source fails, or an entity is refused, aset_baker_abandon(baker). The source must give the same entities each time. The
+ * first pass measures, further ones bake: two in all for most models, one more if objects are kept exact, and more where memory is
+ * short. options may be NULL. ASET_ERR_ARGUMENT: divisions out of range.
  */
 aset_status aset_baker_init(aset_baker *baker, aset_arena *arena, const aset_bake_options *options);
 

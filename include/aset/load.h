@@ -172,8 +172,7 @@ aset_status aset_load_ply(const aset_sink *sink, aset_read read, void *context, 
  * Of a material: Kd is the fill, and diffuse becomes 1; Ks gives specular by its largest component and Ns shine; d gives
  * transmittance 1 - d, or else Tr gives transmittance; Ni is the refraction index. What is missing comes from
  * options->material; numbers below 0 are taken as 0, d and Tr above 1 as 1; maps and the other words are ignored, illum
- * too. ASET_ERR_LIMIT: more than 500 bytes of names of libraries, or one
- * of more than 255, or such a material's.
+ * too. ASET_ERR_LIMIT: more than 500 bytes of names of libraries; a library's or a material's name of more than 255.
  */
 aset_status aset_load_obj(const aset_sink *sink, aset_read read, void *context, const aset_load_options *options,
                           aset_load_report *report);

@@ -4,7 +4,8 @@
  * Most shadow rays leave the model and cross empty cells until they are out of its box. A reach projects the draft's marked voxels,
  * once, onto a square of tiles before each light, and keeps for every tile the distance of the one nearest to the light (as
  * the light buffer of Haines and Greenberg 1986 keeps objects): there a shadow ray may stop. The picture is the same bit for bit,
- * and so are all counts but those of empty cells. Lights of a tracer's scene that are not where the draft's were when it was made get no help from it.
+ * and so are all counts but those of empty cells. Lights of a tracer's scene that are not where the draft's were when it was made
+ * get no help from it.
  */
 #ifndef ASET_REACH_H
 #define ASET_REACH_H

@@ -8,14 +8,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Bytes as a size: where a size_t does not hold them, so many that no arena has them, and still a multiple of its alignment. */
+/* So many bytes that no arena has them, and still a multiple of its alignment. */
+#define WHOLE_MOST (SIZE_MAX / 8 * 8)
+
+/* Bytes as a size: WHOLE_MOST where a size_t does not hold them. */
 static inline size_t whole_bytes(uint64_t bytes) {
-    return bytes < SIZE_MAX / 8 * 8 ? (size_t)bytes : SIZE_MAX / 8 * 8;
+    return bytes < WHOLE_MOST ? (size_t)bytes : WHOLE_MOST;
 }
 
 /* The same of two sizes together. */
 static inline size_t whole_bytes_sum(size_t a, size_t b) {
-    return a <= SIZE_MAX / 8 * 8 - (b < SIZE_MAX / 8 * 8 ? b : SIZE_MAX / 8 * 8) ? a + b : SIZE_MAX / 8 * 8;
+    return b < WHOLE_MOST && a <= WHOLE_MOST - b ? a + b : WHOLE_MOST;
 }
 
 /* a / b, and what is left of a; b is neither 0 nor above 2^63. */

@@ -54,8 +54,8 @@ bool aset_outlook_can_see(const aset_outlook *o, const outlook_cells *cells) {
     aset_real thinnest = real_min(voxel.x, real_min(voxel.y, voxel.z));
     /* a narrow enough angle, and places on the picture would leave the range of numbers */
     aset_real farthest = 16 * (vec_largest(way) + cells->diagonal) * real_max(vec_largest(o->across), vec_largest(o->down));
-    return aset_vec_length(way) < real_min(OUTLOOK_FAR * cells->diagonal, cells->far) && thinnest > rounding_at(o, cells) && real_finite(farthest) &&
-           before > (o->parallel ? 0 : NEAREST * cells->diagonal);
+    return aset_vec_length(way) < real_min(OUTLOOK_FAR * cells->diagonal, cells->far) && thinnest > rounding_at(o, cells) &&
+           real_finite(farthest) && before > (o->parallel ? 0 : NEAREST * cells->diagonal);
 }
 
 #endif

@@ -46,7 +46,8 @@ aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction, aset_real clea
 
 #if ASET_WITH_DRAFTS
 /* Was the reach made for this very light? A tracer's scene may have other ones than the draft's stage. */
-static bool reaches(const aset_reach *reach, const aset_tracer *tracer, uint32_t light) {
+static bool is_reached(const aset_tracer *tracer, uint32_t light) {
+    const aset_reach *reach = tracer->reach;
     if (reach == NULL || reach->draft != tracer->draft || light >= reach->n_lights) {
         return false;
     }
@@ -60,7 +61,7 @@ static bool reaches(const aset_reach *reach, const aset_tracer *tracer, uint32_t
 /* Where on the shadow ray to light number light nothing of the draft is left ahead. */
 static aset_real last_before(const aset_tracer *tracer, const shading *s, uint32_t light, const light_ray *towards) {
 #if ASET_WITH_DRAFTS
-    if (reaches(tracer->reach, tracer, light)) {
+    if (is_reached(tracer, light)) {
         return tracer->reach->calls->last(tracer->reach, light, s->hit.point, real_max(s->clearance, s->nudge), towards);
     }
 #endif
