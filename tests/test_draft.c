@@ -426,6 +426,12 @@ static void test_draft__sentences_and_arguments(void **state) {
     assert_int_equal(open_copy(o), ASET_ERR_SYNTAX);
     assert_non_null(strstr(o->why, "version"));
     free(o->words);
+    copy_words(o, d.draft.words, d.draft.n_words);
+    o->words[WORD_SURFACES] = o->words[WORD_FACETS] + 1;
+    seal(o);
+    assert_int_equal(open_copy(o), ASET_ERR_SYNTAX);
+    assert_non_null(strstr(o->why, "surfaces"));
+    free(o->words);
     free(o);
     drawn_close(&d);
     model_free(&m);
@@ -942,6 +948,158 @@ static void test_draft__beams_follow_the_draft_and_the_view(void **state) {
     guarded_close(&memory);
 }
 
+/* The inverse of an odd number among the numbers of 32 bits. */
+static uint32_t inverse_of(uint32_t x) {
+    uint32_t y = x;
+    for (int i = 0; i < 5; i++) {
+        y *= 2 - x * y;
+    }
+    return y;
+}
+
+/* Gives words that lack only it the check sum wanted, by the header's first spare word: the sum can be gone back from its end. */
+static void forge(uint32_t *words, size_t n_words, uint32_t wanted) {
+    const uint32_t prime = 16777619u, back = inverse_of(prime);
+    uint32_t before = 2166136261u, after = wanted;
+    for (size_t i = WORD_CHECK + 1; i < WORD_SPARE; i++) {
+        before = (before ^ words[i]) * prime;
+        before ^= before >> 15;
+    }
+    for (size_t i = n_words; i-- > WORD_SPARE;) {
+        after ^= after >> 15 ^ after >> 30;
+        after *= back;
+        after ^= i > WORD_SPARE ? words[i] : 0;
+    }
+    words[WORD_SPARE] = before ^ after;
+    words[WORD_CHECK] = wanted;
+    assert_int_equal(aset_draft_checksum(words, n_words), wanted);
+}
+
+/* A small draft comes where a large one lay, with its box and its check sum: beams that take it for the other read nothing beyond. */
+static void test_draft__beams_of_a_draft_that_was_exchanged(void **state) {
+    (void)state;
+    static unsigned char pixels[SIDE * SIDE * 4];
+    model m, one;
+    drawn large, small;
+    opened *o = malloc(sizeof *o);
+    random_state r = random_start(seed_of(77));
+    model_of(&m, &r, 200, false);
+    model_start(&one);
+    model_random_thing(&one, &r, 1, 1);
+    bake(&large, &m, 12, 12, 12, true);
+    bake(&small, &one, 2, 2, 2, true);
+    assert_true(large.draft.n_words > small.draft.n_words);
+    guarded memory = guarded_open((size_t)1 << 20);
+    aset_arena arena;
+    aset_scratch scratch;
+    aset_beams beams;
+    aset_picture picture;
+    memset(&picture, 0, sizeof picture);
+    picture.width = picture.height = SIDE;
+    picture.format = ASET_RGBA8888;
+    picture.stride = 4 * (size_t)SIDE;
+    picture.pixels = pixels;
+    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+    assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
+    assert_int_equal(aset_beams_init(&beams, 8000, &arena), ASET_OK);
+    scratch.beams = &beams;
+    aset_view view = view_from(dvec_real(dvec_make(9, 6, 4)));
+    copy_words(o, large.draft.words, large.draft.n_words);
+    for (int k = 0; k < 2; k++) {
+        if (k == 1) { /* in the same place, and nothing behind it */
+            size_t n = small.draft.n_words;
+            memcpy(o->words, small.draft.words, n * sizeof *o->words);
+            memcpy(o->words + WORD_LOW, large.draft.words + WORD_LOW, 6 * sizeof *o->words);
+            forge(o->words, n, large.draft.words[WORD_CHECK]);
+            memset(o->words + n, 0xff, (o->n_words - n) * sizeof *o->words);
+            o->n_words = n;
+        }
+        assert_int_equal(open_copy(o), ASET_OK);
+        aset_tracer tracer = tracer_of(&o->draft);
+        aset_statistics statistics = {0};
+        /* few rows, so that the voxels before them are still those of the first time */
+        assert_int_equal(aset_render_rows(&tracer, &view, &picture, SIDE / 16 * 8, 8, &scratch, &statistics), ASET_OK);
+        /* of a voxel that the draft does not have, no more than six facets are asked */
+        check(statistics.tests <= 6 * statistics.nonempty_visited, "%" PRIu64 " of %" PRIu64, statistics.tests,
+              statistics.nonempty_visited);
+    }
+    free(o->words);
+    free(o);
+    guarded_close(&memory);
+    drawn_close(&small);
+    drawn_close(&large);
+    model_free(&one);
+    model_free(&m);
+}
+
+#if ASET_WITH_POLYGONS
+/* A cube in whole numbers, seen along diagonals: rays that enter and leave its box, and cross its planes, at one t. */
+static aset_vec3 real3(double x, double y, double z) {
+    return dvec_real(dvec_make(x, y, z));
+}
+
+static void test_draft__beams_and_rays_agree_where_planes_are_crossed_at_once(void **state) {
+    (void)state;
+    model m;
+    drawn d;
+    opened *o = malloc(sizeof *o);
+    model_start(&m);
+    model_light(&m, real3(100, 200, 300));
+    for (int side = 0; side < 2; side++) {
+        const double far = 16 * side;
+        model_rectangle(&m, real3(far, 0, 0), real3(0, 16, 0), real3(0, 0, 16));
+        model_rectangle(&m, real3(0, far, 0), real3(16, 0, 0), real3(0, 0, 16));
+        model_rectangle(&m, real3(0, 0, far), real3(16, 0, 0), real3(0, 16, 0));
+    }
+    bake(&d, &m, 4, 4, 4, true);
+    copy_words(o, d.draft.words, d.draft.n_words);
+    for (int a = 0; a < 3; a++) { /* the grid onto the cube, in whole numbers */
+        o->words[WORD_LOW + a] = word_of_float(0);
+        o->words[WORD_SIZE + a] = word_of_float(1);
+    }
+    seal(o);
+    assert_int_equal(open_copy(o), ASET_OK);
+    aset_tracer tracer = tracer_of(&o->draft);
+    tracer.depth = 1;
+    guarded memory = guarded_open((size_t)1 << 18);
+    aset_arena arena;
+    aset_scratch scratch;
+    aset_beams beams;
+    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+    assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
+    assert_int_equal(aset_beams_init(&beams, 4096, &arena), ASET_OK);
+    uint32_t met = 0;
+    for (int i = 0; i < 13 * 13 * 8; i++) {
+        aset_real from[3] = {(aset_real)(16 + i % 13 * 4), (aset_real)(16 + i / 13 % 13 * 4), 40}, step[3] = {-20, -20, -20};
+        for (int a = 0; a < 3; a++) { /* from all eight corners */
+            if ((i / 169 >> a & 1) != 0) {
+                from[a] = 16 - from[a];
+                step[a] = 20;
+            }
+        }
+        aset_view view = {.from = {from[0], from[1], from[2]},
+                          .at = {from[0] + step[0], from[1] + step[1], from[2] + step[2]}, .up = {0, 0, 1}, .height = 8};
+        unsigned char pixels[2][4];
+        aset_statistics statistics[2] = {{0}, {0}};
+        for (int k = 0; k < 2; k++) {
+            aset_picture picture = {.width = 1, .height = 1, .format = ASET_RGBA8888, .transparent = true, .stride = 4};
+            picture.pixels = pixels[k];
+            scratch.beams = k == 0 ? NULL : &beams;
+            assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, 1, &scratch, &statistics[k]), ASET_OK);
+        }
+        check(memcmp(pixels[0], pixels[1], 4) == 0 && statistics[0].nonempty_visited == statistics[1].nonempty_visited,
+              "%d: alpha %d and %d", i, pixels[0][3], pixels[1][3]);
+        met += pixels[0][3] > 0;
+    }
+    check(met > 100, "%" PRIu32, met);
+    free(o->words);
+    free(o);
+    guarded_close(&memory);
+    drawn_close(&d);
+    model_free(&m);
+}
+#endif
+
 /* What the beams are of, changed one thing at a time, and a picture in which two rows may not be drawn together. */
 static void test_draft__beams_are_of_one_picture(void **state) {
     (void)state;
@@ -1122,6 +1280,10 @@ int main(void) {
         cmocka_unit_test(test_draft__a_reach_helps_its_own_lights_alone),
         cmocka_unit_test(test_draft__beams_from_far_away_and_from_a_face),
         cmocka_unit_test(test_draft__beams_follow_the_draft_and_the_view),
+        cmocka_unit_test(test_draft__beams_of_a_draft_that_was_exchanged),
+#if ASET_WITH_POLYGONS
+        cmocka_unit_test(test_draft__beams_and_rays_agree_where_planes_are_crossed_at_once),
+#endif
         cmocka_unit_test(test_draft__beams_are_of_one_picture),
         cmocka_unit_test(test_draft__beams_and_reach_refuse),
         cmocka_unit_test(test_draft__statistics),

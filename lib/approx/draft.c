@@ -99,6 +99,9 @@ static const char *check_header(const uint32_t *words, size_t n_words) {
             return "a draft with divisions or a box that cannot be";
         }
     }
+    if (words[WORD_SURFACES] > words[WORD_FACETS]) {
+        return "a draft with more surfaces than facets";
+    }
     if (words[WORD_FOOTPRINTS] > 65536 || words[WORD_KEPT] > ASET_KEPT_MAX || words[WORD_LIGHTS] > n_words || words[WORD_KEPT_WORDS] > n_words) {
         return "a draft with more lights, footprints or exact objects than it can have";
     }

@@ -156,7 +156,8 @@ bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dens
     const aset_real low[3] = {(aset_real)(int32_t)(at[0] * 16 + k % 4 * 4), (aset_real)(int32_t)(at[1] * 16 + k / 4 % 4 * 4),
                               (aset_real)(int32_t)(at[2] * 16 + k / 16 * 4)};
     int32_t n_through = come_through(through, beam, low);
-    if (n_through == 0) {
+    /* A hostile draft may lie where the band's draft lay, with its check sum: no voxel that it does not have. */
+    if (n_through == 0 || dense >= beam->draft->n_blocks || (draft_marks(beam->draft, dense) >> k & 1u) == 0) {
         return false;
     }
     const aset_real middle[3] = {low[0] + 2, low[1] + 2, low[2] + 2};

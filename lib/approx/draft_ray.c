@@ -263,6 +263,7 @@ static inline bool walk_block(way *w, lanes *l, entry *e, uint32_t block) {
 /* Where the ray begins in the box; false if nowhere. */
 static inline bool clip(const way *w, entry *e) {
     aset_real t_out = REAL_INFINITY;
+    int first_out = 3;
     bool within = true;
     e->t = 0;
     e->axis = -1;
@@ -275,13 +276,18 @@ static inline bool clip(const way *w, entry *e) {
     for (int a = 0; a < 3; a++) {
         aset_real side = (aset_real)(int32_t)w->draft->n[a] * VOXEL, low = w->turned[a] ? -side : 0;
         aset_real in = (low - w->from[a]) * w->inverse[a], out = (low + side - w->from[a]) * w->inverse[a];
-        if (in > e->t) {
+        if (in > e->t || (in == e->t && e->axis >= 0)) {
             e->t = in;
             e->axis = a;
         }
-        t_out = real_min(t_out, out);
+        if (out < t_out) {
+            t_out = out;
+            first_out = a;
+        }
     }
-    return e->t <= t_out && e->t < w->t_last;
+    /* As in the chain of all planes (beams meet them so): of planes crossed at one t, those of the lower axis come first. */
+    bool before_out = e->t < t_out || (e->t == t_out && e->axis <= first_out);
+    return before_out && e->t < w->t_last;
 }
 
 /* Brings a ray that comes from far away near the box, and clips it again: what is left of it is short. */
