@@ -809,6 +809,61 @@ static void test_baker__a_million_triangles_in_one_voxel(void **state) {
     }
 }
 
+/* Parts of two materials as large as can be, one layer below what a sum holds and one above. */
+static void test_baker__too_many_layers_are_refused(void **state) {
+    (void)state;
+    static const aset_real square[18] = {0, 0, R(0.5), 1, 0, R(0.5), 1, 1, R(0.5), 0, 0, R(0.5), 1, 1, R(0.5), 0, 1, R(0.5)};
+    for (int k = 0; k < 2; k++) {
+        soup s = {square, 2, (uint32_t)((1 << 20) - 1 + k), {plain_material(), plain_material()}, true};
+        aset_bake_options options = options_of(1, 1, 1);
+        guarded memory = guarded_open(ROOM);
+        aset_arena arena;
+        aset_draft draft;
+        aset_bake_report report;
+        options.keep_none = true;
+        s.materials[0].shine = R(20000000);
+        s.materials[1].shine = R(19000000);
+        assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+        aset_status status = bake_all(&draft, &report, &arena, &options, soup_emit, &s);
+        assert_int_equal(status, k == 0 ? ASET_OK : ASET_ERR_LIMIT);
+        if (status == ASET_OK) {
+            assert_true(aset_draft_texture(&draft, 0).shine == R(16777215));
+        } else {
+            assert_int_equal(arena.used, 0);
+        }
+        guarded_close(&memory);
+    }
+}
+
+/* A polygon's mean plane may leave its box: no pass may pass it over for its box alone. */
+static void test_baker__bent_polygons_in_any_number_of_passes(void **state) {
+    (void)state;
+    model m;
+    model_start(&m);
+    for (int i = 0; i < 64 * 64; i++) { /* all of two faces, for bins enough */
+        model_rectangle(&m, at(i % 64, i / 64, 0.1), at(1, 0, 0), at(0, 1, 0));
+        model_rectangle(&m, at(i % 64, i / 64, 63.9), at(1, 0, 0), at(0, 1, 0));
+    }
+    const aset_vec3 bent[4] = {at(0, 0, 31), at(60, 0, 1), at(60, 60, 31), at(0, 60, 31)};
+    model_polygon(&m, bent, NULL, 4);
+    aset_bake_options options = options_of(16, 16, 16);
+    baked whole;
+    options.keep_none = true;
+    bake_model(&whole, &m, &options);
+    uint32_t most = 0;
+    for (options.bytes = 60000; options.bytes >= 15000; options.bytes -= 3000) {
+        baked b;
+        bake_model(&b, &m, &options);
+        check(same_words(&b.draft, &whole.draft), "%zu bytes, %" PRIu32 " facets, not %" PRIu32, options.bytes,
+              b.draft.n_facets, whole.draft.n_facets);
+        most = b.report.passes > most ? b.report.passes : most;
+        bake_close(&b);
+    }
+    check(most > 5, "%" PRIu32 " passes", most);
+    bake_close(&whole);
+    model_free(&m);
+}
+
 /* The quick way in and the sink give the same words, kept triangles included. */
 static void test_baker__triangles_are_polygons(void **state) {
     (void)state;
@@ -1095,6 +1150,71 @@ static void test_baker__far_from_the_origin_in_double(void **state) {
 #endif
 #endif
 
+#if ASET_WITH_SPHERES
+/* What meets no column's middle is counted, an object as one. */
+static void test_baker__tiny_round_things_are_unseen(void **state) {
+    (void)state;
+    model m;
+    baked b;
+    aset_bake_options options = options_of(8, 8, 8);
+    options.keep_none = true;
+    model_start(&m);
+    model_sphere(&m, at(0, 0, 0), 1);
+    for (int i = 0; i < 100; i++) {
+        model_sphere(&m, at(0.01 * i, 0.3, 0.4), 1e-6);
+    }
+    bake_model(&b, &m, &options);
+    assert_int_equal(b.report.objects, 101);
+    assert_int_equal(b.report.unseen, 100);
+    bake_close(&b);
+#if ASET_WITH_CONES
+    for (int i = 0; i < 7; i++) {
+        model_cone(&m, at(0.01 * i, 0.3, 0.4), 1e-6, at(0.01 * i, 0.3, 0.400001), 2e-6);
+    }
+    bake_model(&b, &m, &options);
+    assert_int_equal(b.report.unseen, 107);
+    bake_close(&b);
+#endif
+    model_free(&m);
+}
+
+#if ASET_REAL_BITS == 64
+/* The words hold floats: what they cannot tell is refused at the end, with nothing left behind. */
+static aset_status odd_stage(const aset_sink *sink, const void *context) {
+    int which = *(const int *)context;
+    aset_material plain = plain_material();
+    aset_light light = {.position = {which == 0 ? 1e60 : 5, 0, 0}};
+    aset_view view = {.from = {1e5, 0, 0}, .at = {1e5 + (which == 1 ? 1e-5 : 1), 0, 0}, .up = {0, 0, 1}, .angle_deg = 40};
+    plain.fill.r = which == 2 ? 1e50 : 1;
+    assert_int_equal(sink->light(sink->context, &light), ASET_OK);
+    assert_int_equal(sink->view(sink->context, &view), ASET_OK);
+    assert_int_equal(sink->material(sink->context, &plain), ASET_OK);
+    for (int i = 0; i < 9; i++) { /* one large, to be kept */
+        const aset_vec3 centre = {i, 0, 0};
+        assert_int_equal(sink->sphere(sink->context, &centre, i == 0 ? 50 : 0.1), ASET_OK);
+    }
+    return ASET_OK;
+}
+
+static void test_baker__what_floats_cannot_tell(void **state) {
+    (void)state;
+    for (int which = 0; which < 4; which++) {
+        guarded memory = guarded_open(ROOM);
+        aset_arena arena;
+        aset_draft draft;
+        aset_bake_report report;
+        aset_bake_options options = options_of(8, 8, 8);
+        assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+        aset_status status = bake_all(&draft, &report, &arena, &options, odd_stage, &which);
+        check(report.kept == 1, "%d: %" PRIu32, which, report.kept);
+        check(status == (which < 3 ? ASET_ERR_PRECISION : ASET_OK), "%d: %d", which, (int)status);
+        check(status == ASET_OK || arena.used == 0, "%d: %zu", which, arena.used);
+        guarded_close(&memory);
+    }
+}
+#endif
+#endif
+
 static void test_baker__models_of_hardly_any_size(void **state) {
     (void)state;
     const double sizes[] = {0, 1e-44, 1e-38, 1e-36, 1e-30, 1e-25, 1e-14, 1e-8}, places[] = {0, 1e-30, 1, 1e14};
@@ -1282,8 +1402,10 @@ int main(void) {
 #if ASET_WITH_SPHERES
         cmocka_unit_test(test_baker__a_source_that_changes_is_refused),
         cmocka_unit_test(test_baker__nothing_is_written_after_an_end),
+        cmocka_unit_test(test_baker__tiny_round_things_are_unseen),
 #if ASET_REAL_BITS == 64
         cmocka_unit_test(test_baker__far_from_the_origin_in_double),
+        cmocka_unit_test(test_baker__what_floats_cannot_tell),
 #endif
 #endif
         cmocka_unit_test(test_baker__materials_of_any_size),
@@ -1293,6 +1415,8 @@ int main(void) {
         cmocka_unit_test(test_baker__shared_edges_share_columns),
         cmocka_unit_test(test_baker__concave_polygons_cover_what_their_triangles_do),
         cmocka_unit_test(test_baker__a_million_triangles_in_one_voxel),
+        cmocka_unit_test(test_baker__too_many_layers_are_refused),
+        cmocka_unit_test(test_baker__bent_polygons_in_any_number_of_passes),
         cmocka_unit_test(test_baker__triangles_are_polygons),
         cmocka_unit_test(test_baker__noise),
         cmocka_unit_test(test_baker__a_ground_is_kept),

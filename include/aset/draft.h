@@ -134,7 +134,8 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
 /*
  * Ends a pass. *again: the source is wanted once more. ASET_ERR_NOMEM: arena->missing tells the bytes that this pass lacked (at
  * least 1, too, where options.bytes is what is too small); a later one may lack others. ASET_ERR_GEOMETRY: the source gave no object,
- * or not as many objects, kept ones or lights as in the first pass; ASET_ERR_LIMIT: over 10^9 layers of surface in one voxel;
+ * or not as many objects, kept ones or lights as in the first pass; ASET_ERR_LIMIT: over 8 10^7 layers of surface in
+ * one voxel, or 10^6 if the model has more than one material;
  * ASET_ERR_PRECISION, in double: between the ends of what the cells hold lie fewer than 64 of the floats that a draft's words are
  * made of, for the model is small and far from the origin. After an error the arena is as before the bake.
  */
@@ -148,7 +149,9 @@ void aset_baker_abandon(aset_baker *baker);
 
 /*
  * Makes the draft, in the arena: the words, and the stage. The result is the same, bit for bit, for every order of the objects
- * and every number of passes. ASET_ERR_ARGUMENT: a pass is still wanted.
+ * and every number of passes. ASET_ERR_ARGUMENT: a pass is still wanted; ASET_ERR_PRECISION, in double: a light, the view or a
+ * kept object is spoilt by rounding to the words' floats, beyond whose range it lies or whose neighbours it cannot tell apart.
+ * Then the arena is as before the bake.
  */
 aset_status aset_baker_finish(aset_draft *draft, aset_baker *baker);
 

@@ -43,7 +43,8 @@ aset_status aset_summary_measure(size_t *bytes, const aset_space *space, uint32_
 
 /*
  * Makes the summary of a built space; capacity 0 takes aset_summary_capacity. ASET_ERR_NOMEM: arena and summary are as
- * before, and arena->missing as aset_summary_measure would say; ASET_ERR_ARGUMENT: a capacity above ASET_TEXTURES_MAX.
+ * before, and arena->missing as aset_summary_measure would say; ASET_ERR_ARGUMENT: a capacity above ASET_TEXTURES_MAX;
+ * ASET_ERR_LIMIT: over 2^24 - 1 objects in one cell.
  */
 aset_status aset_summary_build(aset_summary *summary, const aset_space *space, uint32_t capacity, aset_arena *arena);
 

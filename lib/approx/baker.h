@@ -38,6 +38,7 @@ typedef struct bin {
 } bin;
 
 #define SAMPLES_MAX (UINT32_MAX / 3)
+#define SAMPLES_MAX_MIXED 0xffffffu /* with parts, each of up to 2^40 */
 
 #define BIN_BYTES_SINGLE offsetof(bin, parts)
 

@@ -481,7 +481,7 @@ aset_status aset_baker_finish(aset_draft *draft, aset_baker *baker) {
     aset_status status = read_again(&draft->stage, draft, &baker->stage);
     if (status != ASET_OK) {
         aset_arena_release(baker->arena, &baker->mark);
-        return status;
+        return ASET_ERR_PRECISION; /* what the sink has taken: only rounding can have spoilt it */
     }
     baker->report.facets = draft->n_facets;
     baker->report.textures = draft->n_textures;

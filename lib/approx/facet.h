@@ -69,7 +69,11 @@ typedef struct facet {
 } facet;
 
 static inline uint32_t word_of_float(aset_real x) {
-    float f = (float)x + 0.0f; /* -0 becomes 0: equal numbers, equal words */
+#if ASET_REAL_BITS == 64
+    float f = x > FLT_MAX ? INFINITY : x < -FLT_MAX ? -INFINITY : (float)x + 0.0f;
+#else
+    float f = x + 0.0f; /* -0 becomes 0: equal numbers, equal words */
+#endif
     uint32_t word;
     memcpy(&word, &f, sizeof word);
     return word;

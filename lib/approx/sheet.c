@@ -59,7 +59,7 @@ static void add_sample(aset_baker *b, const sheet *s, int32_t i, int32_t j) {
     if (it == NULL) {
         return;
     }
-    if (it->n == SAMPLES_MAX) {
+    if (it->n == (b->single ? SAMPLES_MAX : SAMPLES_MAX_MIXED)) {
         b->failure = ASET_ERR_LIMIT;
         return;
     }
@@ -196,10 +196,11 @@ static void sample_sheet(aset_baker *b, const aset_real *points, uint32_t n, ase
 
 /*
  * Whether a polygon whose columns reach from..to may be seen. Most of a fine model's triangles hold no column's middle: if their box
- * has none along two axes, no side sees one, and that is found before anything else is computed.
+ * has none along two axes, no side sees one, and that is found before anything else is computed. is_flat: its plane does not leave
+ * its box, so that none of its samples is in another layer.
  */
-static inline bool may_be_seen(aset_baker *b, const int32_t from[3], const int32_t to[3]) {
-    if (b->floor_block > 0) { /* a further pass: the first has counted those that are unseen */
+static inline bool may_be_seen(aset_baker *b, bool is_flat, const int32_t from[3], const int32_t to[3]) {
+    if (is_flat && b->floor_block > 0) { /* a further pass: the first has counted those that are unseen */
         uint32_t in_layer = b->blocks[0] * b->blocks[1];
         uint32_t low = (uint32_t)(from[2] > 0 ? from[2] - 1 : 0) / 16, high = (uint32_t)to[2] / 16;
         if ((high + 1) * in_layer <= b->floor_block || low * in_layer >= b->ceiling_block) {
@@ -222,7 +223,7 @@ static void polygon_in_columns(aset_baker *b, const aset_real *points, uint32_t 
         from[a] = first_column(low, b->n[a]);
         to[a] = first_column(high, b->n[a]);
     }
-    if (may_be_seen(b, from, to)) {
+    if (may_be_seen(b, n == 3, from, to)) {
         sample_sheet(b, points, n, crossings, normal_of(points, n), from, to);
     }
 }
@@ -249,7 +250,7 @@ void aset_sheet_triangle(aset_baker *b, const aset_real *points) {
     int32_t from[3], to[3];
     aset_vec3 x = triangle_on_axis(b, points, 0, from, to), y = triangle_on_axis(b, points, 1, from, to);
     aset_vec3 z = triangle_on_axis(b, points, 2, from, to);
-    if (may_be_seen(b, from, to)) {
+    if (may_be_seen(b, true, from, to)) {
         const aset_real columns[9] = {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z};
         aset_vec3 normal = vec_cross(vec(x.y - x.x, y.y - y.x, z.y - z.x), vec(x.z - x.x, y.z - y.x, z.z - z.x));
         sample_sheet(b, columns, 3, NULL, normal, from, to);
@@ -273,6 +274,12 @@ static void sample_quad(aset_baker *b, aset_vec3 corners[4]) {
         }
         polygon_in_columns(b, points[half], 3, NULL);
     }
+}
+
+/* An object of n quads is unseen if all their triangles are. unseen: the count before it. */
+static void count_unseen(aset_baker *b, uint64_t unseen, uint32_t n) {
+    bool none = b->floor_block == 0 && b->report.unseen - unseen == 2 * (uint64_t)n;
+    b->report.unseen = unseen + none;
 }
 
 #define TURN_MAX 192u
@@ -324,7 +331,7 @@ void aset_sheet_sphere(aset_baker *b, aset_vec3 centre, aset_real radius) {
         around[0] = next[0];
         around[1] = next[1];
     }
-    b->report.unseen = unseen;
+    count_unseen(b, unseen, parts * (parts / 2));
 }
 #endif
 
@@ -347,7 +354,7 @@ void aset_sheet_cone(aset_baker *b, aset_vec3 base, aset_real base_radius, aset_
         sample_quad(b, corners);
         out = next;
     }
-    b->report.unseen = unseen;
+    count_unseen(b, unseen, parts);
 }
 #endif
 

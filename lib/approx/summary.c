@@ -34,6 +34,7 @@ typedef struct filling {
     aset_summary *summary;
     bool numbers; /* the second pass */
     bool overflow; /* the first pass met more textures than there is room for, but not more than asked for */
+    bool too_many; /* objects in a cell: their parts' sum may have left its bits */
     uint32_t room;
     texture_sum sum;
     uint32_t cell; /* the cell that sum belongs to */
@@ -65,6 +66,7 @@ static void finish_cell(filling *f) {
     if (f->sum.n == 0) {
         return;
     }
+    f->too_many = f->too_many || f->sum.n > TEXTURE_OBJECTS_MAX;
     if (f->numbers) { /* none is entered any more: those that are not in the list did not fit */
         bits_put(f->summary->of_cell, f->summary->width, f->cell, aset_texture_take(f->summary, &f->recent, &f->sum));
     } else {
@@ -84,7 +86,7 @@ static void look_at_cell(void *context, uint32_t cell, const uint32_t *objects, 
     }
 }
 
-static bool pass(aset_summary *summary, bool numbers, uint32_t room) {
+static aset_status pass(aset_summary *summary, bool numbers, uint32_t room) {
     filling f;
     memset(&f, 0, sizeof f);
     f.summary = summary;
@@ -92,7 +94,7 @@ static bool pass(aset_summary *summary, bool numbers, uint32_t room) {
     f.room = room;
     summary->space->method->each_cell(summary->space, look_at_cell, &f);
     finish_cell(&f);
-    return !f.overflow;
+    return f.too_many ? ASET_ERR_LIMIT : f.overflow ? ASET_ERR_NOMEM : ASET_OK;
 }
 
 /* The first pass, in the arena's free bytes. On ASET_ERR_NOMEM missing is a bound: the list's length is not known then. */
@@ -108,9 +110,12 @@ static aset_status list_textures(aset_summary *summary, const aset_space *space,
     summary->capacity = capacity > 0 ? capacity : aset_summary_capacity(space->scene);
     summary->textures = (aset_material *)(void *)(arena->block + arena->used);
     *bytes = ASET_BYTES_SUMMARY(space->cells.n_cells, summary->capacity);
-    if (!pass(summary, false, room < UINT32_MAX ? (uint32_t)room : UINT32_MAX)) {
+    aset_status status = pass(summary, false, room < UINT32_MAX ? (uint32_t)room : UINT32_MAX);
+    if (status == ASET_ERR_NOMEM) {
         arena->missing = *bytes - left;
-        return ASET_ERR_NOMEM;
+    }
+    if (status != ASET_OK) {
+        return status;
     }
     summary->width = summary->n_textures > 1 ? bits_width(summary->n_textures - 1) : 1;
     *bytes = ASET_ROUND(summary->n_textures * sizeof *summary->textures) +

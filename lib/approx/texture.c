@@ -2,9 +2,9 @@
  * texture.c - the equal-weight average of materials, and the bounded texture list (Dauenhauer and Semwal 1990, figure 1:
  * "search existing texture list for texture match").
  *
- * A part is kept in units of 2^-16 and below 2^24 (a Phong exponent of 10^5 takes 33 bits), so 2^23 objects may share a cell
- * before a sum could leave 64 bits, and more if exponents are smaller: fill's parts need 17 bits. A stream, which may have
- * as many, is checked (flat_pass.c).
+ * A part is kept in units of 2^-16 and below 2^24 (a Phong exponent of 10^5 takes 33 bits), so 2^24 - 1 objects may share a cell
+ * before a sum could leave 64 bits, and more if exponents are smaller: fill's parts need 17 bits. A space's cells are
+ * checked for as many (summary.c), a stream for its sum of the largest part (flat_pass.c).
  */
 #include "approx/texture.h"
 

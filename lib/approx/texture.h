@@ -14,6 +14,9 @@ typedef struct texture_sum {
     uint32_t n;
 } texture_sum;
 
+/* A part takes up to 2^40 units: so many keep a sum in 64 bits. */
+#define TEXTURE_OBJECTS_MAX 0xffffffu
+
 void aset_texture_sum_add(texture_sum *sum, const aset_material *material);
 
 /* The average, each part rounded to the nearest unit; n > 0. */
