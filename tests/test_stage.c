@@ -206,7 +206,8 @@ static void test_stage__every_corner_is_in_the_picture(void **state) {
 /* Points, lines and planes, near and far: the counter checks a view as every sink does. */
 static void test_stage__boxes_without_extent_have_a_view(void **state) {
     (void)state;
-    static const double places[] = {0, 1e-30, 1, -1000, 1e6, 1e12}, sizes[] = {0, 1e-35, 1e-20, 1e-9, 1, 1e5};
+    static const double places[] = {0, 1e-30, 1, -1000, 1e6, 1e12, 1e15}, sizes[] = {0, 1e-35, 1e-20, 1e-9, 1, 1e5};
+    uint32_t refused = 0;
     for (size_t i = 0; i < COUNT_OF(places); i++) {
         for (size_t k = 0; k < COUNT_OF(sizes); k++) {
             for (int axes = 0; axes < 8; axes++) {
@@ -217,8 +218,16 @@ static void test_stage__boxes_without_extent_have_a_view(void **state) {
                 high.y += axes & 2 ? (aset_real)sizes[k] : 0;
                 high.z += axes & 4 ? (aset_real)sizes[k] : 0;
                 aset_stage_options o = options_of(axes % 2 == 0 ? ASET_UP_Y : ASET_UP_Z, 1);
-                check(aset_stage_emit(&sink, &low, &high, &o) == ASET_OK, "place %g, size %g, axes %d", places[i], sizes[k],
-                      axes);
+                double span = fmax(fmax((double)(high.x - low.x), (double)(high.y - low.y)), (double)(high.z - low.z));
+                double steps = span / (2 * (double)REAL_UNIT * fabs(places[i])); /* between its ends, or a few more */
+                bool told = span == 0 || places[i] == 0 || steps > 65;
+                aset_status status = aset_stage_emit(&sink, &low, &high, &o);
+                check(told || steps < 63 ? status == (told ? ASET_OK : ASET_ERR_PRECISION) : true,
+                      "place %g, size %g, axes %d: %d", places[i], sizes[k], axes, (int)status);
+                if (status != ASET_OK) {
+                    refused++;
+                    continue;
+                }
                 check(counter.has_view && counter.counts.lights == 2 && counter.counts.polygons == ASET_WITH_POLYGONS,
                       "place %g, size %g, axes %d", places[i], sizes[k], axes);
                 aset_vec3 along = {counter.view.at.x - counter.view.from.x, counter.view.at.y - counter.view.from.y,
@@ -228,6 +237,23 @@ static void test_stage__boxes_without_extent_have_a_view(void **state) {
                 check(share > 0.2 && share < 0.35, "place %g, size %g, axes %d: %g", places[i], sizes[k], axes, share);
             }
         }
+    }
+    assert_true(refused > 0);
+}
+
+/* Far from the origin, as maps have it: what has a hundred steps and more between its ends fills the picture as anywhere. */
+static void test_stage__far_models_fill_the_picture(void **state) {
+    (void)state;
+    const double place = 1048576, step = place * 2 * (double)REAL_UNIT;
+    for (double size = 256; size <= 65536; size *= 4) {
+        aset_counter counter;
+        aset_sink sink = aset_counter_sink(&counter);
+        aset_vec3 low = v(place, 0, place), high = v(place + size * step, size * step, place + size * step);
+        aset_stage_options o = options_of(ASET_UP_Y, 1);
+        double x, y;
+        assert_int_equal(aset_stage_emit(&sink, &low, &high, &o), ASET_OK);
+        project(&counter.view, low, &x, &y);
+        check(hypot(x, y) > (sizeof(aset_real) > sizeof(float) ? 0 : 0.3) && hypot(x, y) < 1.1, "%g steps: at %g %g", size, x, y);
     }
 }
 
@@ -277,6 +303,7 @@ int main(void) {
         cmocka_unit_test(test_stage__no_options_and_no_ground),
         cmocka_unit_test(test_stage__every_corner_is_in_the_picture),
         cmocka_unit_test(test_stage__boxes_without_extent_have_a_view),
+        cmocka_unit_test(test_stage__far_models_fill_the_picture),
         cmocka_unit_test(test_stage__refuses),
         cmocka_unit_test(test_stage__the_sinks_answer_ends_it),
     };

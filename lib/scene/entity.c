@@ -32,7 +32,7 @@ aset_status aset_entity_check_view(const aset_view *view) {
         return ASET_ERR_GEOMETRY; /* no direction, no up, or both the same */
     }
     bool perspective = view->height == 0 && view->angle_deg > 0 && view->angle_deg < 180;
-    bool orthographic = view->height > 0 && real_finite(view->height);
+    bool orthographic = view->height > 0 && view->height <= COORDINATE_MAX;
     return perspective || orthographic ? ASET_OK : ASET_ERR_ARGUMENT;
 }
 

@@ -25,7 +25,10 @@
  * Of the largest coordinate: with less, points of the stage would round to the same ones; in float whatever aset_real is, for
  * a draft's words are floats.
  */
-#define RADIUS_SHARE R(2048 * (FLT_EPSILON / 2))
+#define RADIUS_SHARE R(128 * (FLT_EPSILON / 2))
+
+/* The least steps between neighbouring coordinates that a model must be long, as a scene must (slices.c); or it is a point. */
+#define STEPS_LEAST 64
 
 typedef struct stage {
     const aset_sink *sink;
@@ -43,6 +46,11 @@ static aset_real radius_of(aset_vec3 low, aset_vec3 high, aset_vec3 centre) {
     aset_real radius = aset_vec_length(vec_sub(high, low)) / 2;
     radius = real_max(radius, vec_largest(centre) * RADIUS_SHARE);
     return radius >= RADIUS_LEAST ? radius : 1;
+}
+
+static bool is_precise(aset_vec3 low, aset_vec3 high) {
+    aset_real size = vec_largest(vec_sub(high, low)), largest = real_max(vec_largest(low), vec_largest(high));
+    return size == 0 || size >= STEPS_LEAST * 2 * REAL_UNIT * largest;
 }
 
 static aset_status emit_background(const stage *s) {
@@ -122,6 +130,9 @@ aset_status aset_stage_emit(const aset_sink *sink, const aset_vec3 *low, const a
     bool is_box = vec_finite(*low) && vec_finite(*high) && low->x <= high->x && low->y <= high->y && low->z <= high->z;
     if (!is_box || !(aspect > 0) || !real_finite(aspect) || (o->up != ASET_UP_Y && o->up != ASET_UP_Z)) {
         return ASET_ERR_ARGUMENT;
+    }
+    if (!is_precise(*low, *high)) { /* a scene would say so too, but not with the ground */
+        return ASET_ERR_PRECISION;
     }
     stage s;
     s.sink = sink;
