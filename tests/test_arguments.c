@@ -180,7 +180,7 @@ static bool may_have(size_t entity, size_t field, size_t k) {
         return true;
     }
     bool is_amount = field >= entities[entity].amounts_from && entities[entity].may_be_large;
-    return is_amount && !(is_view && field == 9) && (bad[k] > 0 || entities[entity].may_be_negative);
+    return is_amount && !(is_view && field >= 9) && (bad[k] > 0 || entities[entity].may_be_negative);
 }
 
 static void check_sink(const char *name, const aset_sink *sink) {

@@ -367,6 +367,10 @@ static void test_memory__width_of_numbers(void **state) {
     assert_int_equal(ASET_BYTES_PACKED(9, 7), 8);
     assert_int_equal(ASET_BYTES_PACKED(64, 1), 8);
     assert_int_equal(ASET_BYTES_PACKED(10, 7), 16);
+    /* numbers are found by their bit, counted in a size_t: where that ends, more than any arena has */
+    uint64_t bits = UINT64_C(214748366) * 20;
+    assert_true(ASET_BYTES_PACKED(214748366u, 20) == (bits > SIZE_MAX ? UINT64_C(1) << 31 : (bits + 63) / 64 * 8));
+    assert_true(ASET_BYTES_PACKED(UINT32_C(1) << 31, 16) >= UINT64_C(1) << 31);
 }
 #endif
 

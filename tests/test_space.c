@@ -717,6 +717,13 @@ static void test_space__refuses_bad_arguments(void **state) {
     assert_int_equal(aset_space_measure(&size, NULL, &aset_mset, NULL, &s.arena), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_space_measure(&size, &s.scene, NULL, NULL, &s.arena), ASET_ERR_ARGUMENT);
     assert_int_equal(s.arena.used, used);
+    aset_space_size before; /* a measurement that fails leaves the last one as it is */
+    memset(&options, 0, sizeof options);
+    options.depth = ASET_DEPTH_TREE_MAX + 1;
+    assert_int_equal(aset_space_measure(&size, &s.scene, &aset_mset, NULL, &s.arena), ASET_OK);
+    memcpy(&before, &size, sizeof size);
+    assert_int_equal(aset_space_measure(&size, &s.scene, &aset_octree, &options, &s.arena), ASET_ERR_ARGUMENT);
+    assert_memory_equal(&size, &before, sizeof size);
     stage_space(&s, &space, &aset_mset, ASET_DIVISIONS_MAX, 1, 2); /* the largest allowed */
     stage_close(&s);
     model_free(&m);

@@ -444,6 +444,19 @@ static void test_trace__refraction_through_a_slab(void **state) {
     }
 }
 
+/* Straight in and out, by an index whose last digit is above 1: sum and difference of the directions cancel to nothing. */
+static void test_trace__refraction_beyond_the_digits(void **state) {
+    (void)state;
+    const double indices[] = {4 / (double)REAL_UNIT, (double)REAL_UNIT / 4};
+    for (size_t i = 0; i < COUNT_OF(indices); i++) {
+        studio st;
+        slab_studio(&st, 0.5, indices[i], dvec_make(0, 0, -2));
+        dvec c = colour_of(&st, real3(0, 0, 3), dvec_make(0, 0, -1));
+        check_colour(c, 0.1 * (1 + 0.5), 0, 0.25 * 1, 1e-4, "ball behind the slab");
+        studio_close(&st);
+    }
+}
+
 static void test_trace__refraction_through_a_ball(void **state) {
     (void)state;
     random_state r = random_start(seed_of(31));
@@ -502,6 +515,30 @@ static void test_trace__total_internal_reflection(void **state) {
             check_colour(c, 0.1 * (1 + 0.5 + 0.25 + 0.125 + 0.0625), 0, 0, 1e-5, "to and fro");
             assert_true(st.statistics.reflected == 4 && st.statistics.refracted == 0);
         }
+        studio_close(&st);
+    }
+}
+#endif
+
+#if ASET_WITH_REFLECTION && ASET_WITH_SPHERES
+/* Between two mirrors that give back far more than they get: much light, but a number. */
+static void test_trace__mirrors_that_amplify(void **state) {
+    (void)state;
+    const double most = sqrt((double)REAL_MAX), amounts[] = {2, most / 4, most * 4, (double)REAL_MAX};
+    for (size_t i = 0; i < COUNT_OF(amounts); i++) {
+        studio st;
+        aset_material material = painted(0, 0, 0);
+        material.specular = (aset_real)amounts[i];
+        memset(&st, 0, sizeof st);
+        model_start(&st.m);
+        model_material(&st.m, &material);
+        model_sphere(&st.m, real3(0, 0, 0), 1);
+        model_sphere(&st.m, real3(0, 0, 4), 1);
+        st.m.background.g = 1;
+        studio_open(&st, &aset_mset, 5);
+        dvec c = colour_of(&st, real3(0, 0, 2), dvec_unit(dvec_make(0, 0.1, 1)));
+        check(st.statistics.reflected == 4 || st.statistics.secondary_hit < st.statistics.reflected, "amount %g", amounts[i]);
+        check(c.x == 0 && c.z == 0 && c.y >= 0, "amount %g: %g %g %g", amounts[i], c.x, c.y, c.z);
         studio_close(&st);
     }
 }
@@ -1266,11 +1303,15 @@ int main(void) {
 #endif
 #if ASET_WITH_SPHERES && ASET_WITH_POLYGONS && ASET_WITH_REFLECTION
         cmocka_unit_test(test_trace__reflection_off_a_mirror),
+#if ASET_WITH_SPHERES
+        cmocka_unit_test(test_trace__mirrors_that_amplify),
+#endif
         cmocka_unit_test(test_trace__depth_ends_the_chain),
 #endif
 #if ASET_WITH_SPHERES && ASET_WITH_POLYGONS && ASET_WITH_REFRACTION && ASET_WITH_REFLECTION
         cmocka_unit_test(test_trace__refraction_through_a_slab),
         cmocka_unit_test(test_trace__refraction_through_a_ball),
+        cmocka_unit_test(test_trace__refraction_beyond_the_digits),
         cmocka_unit_test(test_trace__total_internal_reflection),
 #endif
         cmocka_unit_test(test_trace__t_counts_in_lengths_of_the_direction),

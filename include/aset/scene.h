@@ -73,6 +73,9 @@ typedef struct aset_counts {
 #ifndef ASET_RECENT
 #define ASET_RECENT 16u
 #endif
+#if ASET_RECENT < 1 || (ASET_RECENT != 16 && !ASET_HOSTILE)
+#error "ASET_RECENT is 16, for scenes are of one size in library and program; a hostile build may take any number but 0"
+#endif
 
 /* --- The fields of the following structs are private: they are public so that you can hold them. --- */
 

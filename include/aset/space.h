@@ -76,7 +76,9 @@ typedef struct aset_space_size {
      (((n) >> 31) != 0))
 
 /* Bytes of an array of count numbers of width bits. */
-#define ASET_BYTES_PACKED(count, width) (((uint64_t)(count) * (width) + 63u) / 64u * 8u)
+#define ASET_BYTES_PACKED(count, width)                                                                                \
+    ((uint64_t)(count) * (width) >> (8u * sizeof(size_t) - 1u) > 1u ? (uint64_t)1 << (8u * sizeof(size_t) - 1u)        \
+                                                                    : ((uint64_t)(count) * (width) + 63u) / 64u * 8u)
 
 /* 64-bit words of the map of blocks, for faces cell sides a voxel (MSET: 6). */
 #define ASET_BLOCK_WORDS(nx, ny, nz, faces)                                                                            \
@@ -182,6 +184,9 @@ typedef struct aset_large {
 #ifndef ASET_LARGE_MAX
 #define ASET_LARGE_MAX 16u
 #endif
+#if ASET_LARGE_MAX < 1 || ASET_LARGE_MAX > 16
+#error "ASET_LARGE_MAX is 1 to 16: a walk hands that many objects over at once"
+#endif
 
 typedef struct aset_space {
     const aset_method *method;
@@ -215,7 +220,8 @@ void aset_auto_divisions(const aset_scene *scene, size_t budget, uint32_t divisi
 
 /*
  * What aset_space_build will take from the arena for these options, exactly, without taking it. Counting works in the
- * arena's free bytes (nothing is accounted), or in a kilobyte of the stack if arena is NULL. Brute force, MSET and grid
+ * arena's free bytes (nothing is accounted), or in a kilobyte of the stack if arena is NULL. Automatic divisions are those that
+ * build begins with: where they do not fit it goes on to coarser ones. Brute force, MSET and grid
  * manage with any scratch; the less there is, the more passes over the objects. The others need what they need while
  * building: too little of it is ASET_ERR_NOMEM, with arena->missing and size->scratch telling what would be enough for any
  * scene of so many objects. ASET_ERR_ARGUMENT: divisions, depth or leaf out of range; ASET_ERR_LIMIT: over 2^32 - 2

@@ -92,7 +92,8 @@ aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena 
 /*
  * The colour that comes back along a ray, by Whitted's model (1980) as libaset defines it: 0.1 fill + for each unshadowed
  * light I (Kd fill (N.L) + Ks (R.V)^shine), + Ks times the reflected ray's + T times the refracted ray's colour; the
- * background where nothing is hit; no falloff. Not clamped. ray->t_max is not used. ASET_ERR_ARGUMENT as aset_closest_hit,
+ * background where nothing is hit; no falloff. Not clamped: a component may be infinite, or no number, only where a product of
+ * amounts of the materials and a light leaves the range of numbers. ray->t_max is not used. ASET_ERR_ARGUMENT as aset_closest_hit,
  * and for a scratch of less depth than the tracer's.
  */
 aset_status aset_ray_colour(aset_colour *colour, const aset_tracer *tracer, const aset_ray *ray, aset_scratch *scratch,
@@ -128,7 +129,8 @@ typedef struct aset_picture {
  * Draws the rows first_row to first_row + n_rows - 1 of the picture that view shows. Colours are clamped to 0..1, times 255,
  * rounded, without gamma; of several samples each is clamped, then they are averaged. The same rows come out whichever
  * thread draws them. Under spd_rules the picture has width + 1 columns and height + 1 rows. ASET_ERR_ARGUMENT: a row outside
- * the picture, no scratch, too many samples; ASET_ERR_GEOMETRY: a view that cannot be (see aset_view); ASET_ERR_STOPPED.
+ * the picture, no scratch, too many samples; ASET_ERR_GEOMETRY or ASET_ERR_ARGUMENT: a view that cannot be, as a
+ * sink would say; ASET_ERR_STOPPED.
  */
 aset_status aset_render_rows(const aset_tracer *tracer, const aset_view *view, const aset_picture *picture,
                              uint32_t first_row, uint32_t n_rows, aset_scratch *scratch, aset_statistics *statistics);

@@ -74,13 +74,14 @@ typedef struct aset_light {
 typedef struct aset_view {
     aset_vec3 from, at, up;
     aset_real angle_deg; /* perspective: the full field of view across the picture's height, 0 < angle < 180 */
-    aset_real height;    /* orthographic: the height of the picture in scene units; 0 means perspective */
+    aset_real height;    /* orthographic: the height of the picture in scene units, up to 10^30 (10^300 in double); 0: perspective */
     uint32_t width_px, height_px; /* the resolution that the scene asks for; 0: none */
 } aset_view;
 
 typedef struct aset_ray {
-    aset_vec3 origin, direction; /* finite; the direction is not 0 and need not be of unit length */
-    aset_real t_max;             /* hits with 0 < t < t_max count; t in lengths of direction. INFINITY: no end */
+    aset_vec3 origin, direction; /* finite; the direction is not 0 and need not be of unit length. A quarter of the largest number
+                                    is as far as an origin is told; and 2^78 times the scene's size */
+    aset_real t_max; /* hits with 0 < t < t_max count, to the rounding of t; t in lengths of direction. INFINITY: no end */
 } aset_ray;
 
 /* Object number of a hit on a cell, which belongs to no object. */

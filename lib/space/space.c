@@ -67,8 +67,17 @@ aset_status aset_space_measure(aset_space_size *size, const aset_scene *scene, c
     if (size == NULL || scene == NULL || method == NULL) {
         return ASET_ERR_ARGUMENT;
     }
-    aset_status status = choose_size(size, scene, method, options, arena, &is_auto);
-    return status == ASET_OK ? measure_with(size, scene, method, arena) : status;
+    aset_space_size measured;
+    aset_status status = choose_size(&measured, scene, method, options, arena, &is_auto);
+    if (status == ASET_OK) {
+        status = measure_with(&measured, scene, method, arena);
+    }
+    if (status == ASET_OK) {
+        *size = measured;
+    } else if (status == ASET_ERR_NOMEM) {
+        size->scratch = measured.scratch;
+    }
+    return status;
 }
 
 /* What automatic divisions have to leave room for, beside the space. */

@@ -134,6 +134,9 @@ bool aset_shade_refracted(const shading *s, aset_vec3 *direction) {
     }
     aset_vec3 along = vec_scale(s->direction, ratio);
     *direction = aset_vec_unit(vec_along(along, ratio * cosine - real_sqrt(under_root), s->normal));
+    if (!(vec_largest(*direction) > 0)) { /* straight in, by a ratio beyond the digits of 1: nothing is left of it */
+        *direction = s->direction;
+    }
     return true;
 }
 #endif

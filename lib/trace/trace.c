@@ -39,7 +39,7 @@ static void leave(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer,
     aset_waiting *w = scratch->stack + (*n)++;
     w->origin = aset_shade_start(s, direction, aset_policy_approximate(tracer, kind, depth) ? s->clearance : 0);
     w->direction = direction;
-    w->weight = weight;
+    w->weight = real_min(weight, REAL_MAX); /* by amounts above 1, again and again; infinity times black is no colour */
     w->depth = (uint16_t)depth;
     w->kind = (uint16_t)kind;
 }
