@@ -149,9 +149,9 @@ void aset_baker_abandon(aset_baker *baker);
 
 /*
  * Makes the draft, in the arena: the words, and the stage. The result is the same, bit for bit, for every order of the objects
- * and every number of passes. ASET_ERR_ARGUMENT: a pass is still wanted; ASET_ERR_PRECISION, in double: a light, the view or a
- * kept object is spoilt by rounding to the words' floats, beyond whose range it lies or whose neighbours it cannot tell apart.
- * Then the arena is as before the bake.
+ * and every number of passes. ASET_ERR_ARGUMENT: a pass is still wanted; ASET_ERR_PRECISION: a light, the view or a kept
+ * object cannot be told in the words' floats: in double it lies beyond their range, or its parts fall together; in float, too, where
+ * one is so small in so large a model that nothing is left of it. Then the arena is as before the bake.
  */
 aset_status aset_baker_finish(aset_draft *draft, aset_baker *baker);
 

@@ -78,7 +78,7 @@ static void bake(const uint8_t *data, size_t size, bool is_large) {
         status = aset_baker_finish(&draft, baker);
     }
     require(status == ASET_OK || status == ASET_ERR_NOMEM || status == ASET_ERR_GEOMETRY || status == ASET_ERR_LIMIT ||
-            status == ASET_ERR_READ);
+            status == ASET_ERR_READ || status == ASET_ERR_PRECISION);
     require(status == ASET_OK || arena.used == 0);
     require(status != ASET_ERR_NOMEM || arena.missing > 0);
     if (status == ASET_OK) {
