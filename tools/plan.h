@@ -25,7 +25,7 @@ typedef struct plan_wish {
     bool holds_scene; /* the bytes are those of a program that holds the scene, whatever is approximate */
 } plan_wish;
 
-enum { PLAN_SETTINGS_MAX = 64 };
+enum { PLAN_SETTINGS_MAX = 256 }; /* three methods, four levels, a dozen steps, and brute force */
 
 typedef struct plan {
     plan_setting settings[PLAN_SETTINGS_MAX];
