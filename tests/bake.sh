@@ -86,6 +86,30 @@ a_draft_is_drawn_from_anywhere() {
     same a.ppm e.ppm "the words that a draft implies change it"
     refuses 2 "aset: --approx: " render a.draft --approx shadow
     refuses 2 "aset: --approx: " render a.draft --approx all --approx-depth 1
+    refuses 2 "aset: --cells: " render a.draft --cells flat
+    cp a.draft copy # its first word tells
+    works render copy -s 40x40 -o f.ppm
+    works copy g.ppm -s 40x40
+    same a.ppm f.ppm "under a name without an ending it draws another picture"
+    same a.ppm g.ppm "under a name without an ending the short form draws another picture"
+    refuses 1 "aset: copy: a baked draft" info copy
+    refuses 1 "aset: a.draft: a baked draft" bake a.draft -o b.draft
+}
+
+# What a draft is said to need, whatever it had, is enough, and not twice what is.
+needs_of_drafts_are_enough() {
+    local memory need first=
+    works scene gears --size 2 -o gears.nff
+    for memory in 1 50000 100000 150000; do
+        tool render gears.nff --grid 30 $draft_words --memory $memory -s 8x8
+        [ $status -eq 1 ] || fail "$memory bytes: status $status"
+        need=$(sed -n 's/.* needs \([0-9]*\) bytes.*/\1/p' "$err")
+        [ "$need" -gt "$memory" ] || fail "with $memory bytes it needs $need"
+        works render gears.nff --grid 30 $draft_words --memory "$need" -s 8x8
+        : "${first:=$need}"
+        [ $((need * 100)) -lt $((first * 125)) ] && [ $((need * 100)) -gt $((first * 80)) ] ||
+            fail "with $memory bytes it needs $need, with 1 $first"
+    done
 }
 
 headers_hold_the_words() {
@@ -215,8 +239,9 @@ joined_pieces_are_the_picture() {
     same joined.png all.png "PNGs and PPMs to PNG"
     works join all.png -o -
     same "$out" all.png "one piece to standard output"
-    works join 0.png 1.png 2.png 3.png -o 0.png
-    same 0.png all.png "onto one of the pieces"
+    cp 0.png piece.png
+    refuses 1 "aset: 0.png: it is read, too" join 0.png 1.png 2.png 3.png -o 0.png
+    same 0.png piece.png "a piece is written over"
     works render "$scenes/block.obj" --transparent $draft_words -s 30x20 -o whole.png
     works render "$scenes/block.obj" --transparent $draft_words -s 30x20 --rows 0:7 -o a.png
     works render "$scenes/block.obj" --transparent $draft_words -s 30x20 --rows 7:20 -o b.png
@@ -373,7 +398,7 @@ make_block >"$scenes/block.obj" && make_stl "$scenes/block.obj" >"$scenes/block.
 }
 
 cases="
-baked_drafts_draw_the_same_picture a_draft_is_drawn_from_anywhere headers_hold_the_words headers_compile bake_says_one_line
+baked_drafts_draw_the_same_picture a_draft_is_drawn_from_anywhere needs_of_drafts_are_enough headers_hold_the_words headers_compile bake_says_one_line
 memory_decides_passes_only bake_refuses broken_drafts_are_refused joined_pieces_are_the_picture join_refuses
 thumbnails_of_a_folder broken_models_are_listed thumb_refuses progress_of_thumbnails
 flash_draws_what_render_draws flash_is_limited_when_compiled

@@ -233,7 +233,7 @@ names_of_any_kind() {
     { printf '# %s\n\n' "a comment" && cat ball.obj; } >copy
     works copy nameless.png -s 24
     printf 'v\nfrom 0 0 5\n' >copy # NFF needs its name
-    refuses 1 "aset: copy: neither a scene by its name nor a model by its first bytes" copy a.png
+    refuses 1 "aset: copy: neither a scene by its name nor a model or draft by its first bytes" copy a.png
     printf 'plain text\n' >copy
     refuses 1 "aset: copy: neither " copy a.png
     : >copy

@@ -143,7 +143,7 @@ copies_without_an_ending() {
         mkdir -p out
         tool "$file" x.png -s 64
         [ $status -eq 1 ] || fail "$file: status $status"
-        grep -q "^aset: $file: neither a scene by its name nor a model by its first bytes" "$err" || fail "$file: $(cat "$err")"
+        grep -q "^aset: $file: neither a scene by its name nor a model or draft by its first bytes" "$err" || fail "$file: $(cat "$err")"
         [ ! -e x.png ] || fail "$file: a picture"
     done
 }

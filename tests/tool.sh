@@ -933,6 +933,15 @@ outputs_that_are_taken() {
     cmp -s a.png b.png || fail "a picture is gone"
     works render a.nff -s 8x8 -o a.png
     works render a.nff -s 8x8 -o a.png
+    ln -s a.png picture.png
+    for words in "compare a.png b.png -o a.png" "compare a.png b.png -o picture.png" "join a.png b.png -o b.png" \
+        "sheet a.png=one b.png -o sub/../a.png"; do
+        # shellcheck disable=SC2086
+        tool $words
+        [ $status -ne 0 ] && cmp -s a.png b.png || fail "aset $words: status $status, or a picture is gone"
+    done
+    works join a.png b.png -o c.png
+    works join c.png b.png -o d.png
 }
 
 # Plan and trade take the camera and what models get, as render does.
@@ -963,6 +972,24 @@ plan_and_info_at_the_edges() {
     grep -q '^draft *none: ' "$out" || fail "info of a huge scene: $(tail -n 1 "$out")"
     works "$scenes/balls.nff" a.png -m octree --octree-depth 4 -s 8
 }
+
+# A plan keeps to what is asked for or says that it cannot; brute force, the last resort, is looked at where it does.
+plan_keeps_its_word() {
+    works scene snow -o snow.nff
+    local need words
+    need_of snow.nff -m brute -s 64 --memory 1
+    for words in "" "--error 30" "--error 99" "--time 1e6"; do
+        # shellcheck disable=SC2086
+        works plan snow.nff -s 64 --memory $need $words --json
+        [ "$(json "$out" method)" = '"brute"' ] && [ "$(json "$out" approx)" = '"none"' ] || fail "$words: $(cat "$out")"
+    done
+    works plan snow.nff -s 64 --memory $((need - 1)) --json
+    [ "$(json "$out" approx)" = '"all"' ] || fail "one byte less: $(cat "$out")"
+    tool plan snow.nff -s 64 --memory $((need - 1)) --error 60
+    refused 1 "aset: snow.nff: no setting within $((need - 1)) bytes has 60 dB"
+}
+
+# A tree's depth is 6 unless said}
 
 # A tree's depth is 6 unless said otherwise, and never less in silence.
 tree_depth_is_kept() {
@@ -1033,6 +1060,7 @@ tables_repeat_their_counts() {
     works tables --size=12 --rounds=0
     same a.txt "$out" "two runs differ"
     [ "$(grep -c '^Snow 30 ' a.txt)" -ge 6 ] || fail "Snow 30 stands in $(grep -c '^Snow 30 ' a.txt) tables"
+    ! grep -q ' 0\.00 (' a.txt || fail "a time of nothing: $(grep -m 1 ' 0\.00 (' a.txt)"
     grep -q '^Tetra 10 .* 1[01]\.[0-9]* (11\.40) ' a.txt || fail "no density of Tetra 10 near 11.4"
     works tables --size 9 --rounds 2 --markdown
     [ "$(grep -c '^## ' "$out")" -eq 5 ] || fail "$(grep -c '^## ' "$out") headings"
@@ -1213,7 +1241,7 @@ bad_announced_but_missing_points bad_order bad_views bad_objects bad_camera_opti
 scene_text_is_read_freely budget_exact budget_approximate flat_is_streamed budget_of_two_threads budget_is_what_info_says
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
 scene_into_render compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
-full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere plan_and_info_at_the_edges tree_depth_is_kept old_output interrupted progress_bar
+full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere plan_and_info_at_the_edges plan_keeps_its_word tree_depth_is_kept old_output interrupted progress_bar
 trade_table trade_best_marks trade_says_what_render_says trade_of_a_model trade_resumes trade_page trade_refuses
 "
 # shellcheck disable=SC2086

@@ -61,13 +61,13 @@ static bool is_scene(const char *word) {
 
 static bool is_model(const char *word) {
     tool_kind kind = tool_kind_of(word);
-    return kind != TOOL_KIND_NONE && kind != TOOL_KIND_NFF;
+    return kind == TOOL_KIND_OBJ || kind == TOOL_KIND_STL || kind == TOOL_KIND_PLY;
 }
 
 /* SCENE OUT [options], in argv[0] and on, as render DRAFT... SCENE -o OUT [options]. */
 static int run_short(int argc, char **argv) {
     if (argc < 2 || (argv[1][0] == '-' && argv[1][1] != '\0')) {
-        tool_error(NULL, 0, "%s: where should the picture go? aset SCENE OUT.png, or aset render --help", argv[0]);
+        tool_error(NULL, 0, "%s: where should the picture go? It comes second: aset SCENE OUT.png [options], or aset render --help", argv[0]);
         return TOOL_USAGE;
     }
     /* the program's words render, -o and NULL besides the draft's and the user's */

@@ -17,7 +17,8 @@
 static const char help[] =
     "aset bake MODEL -o FILE: makes a draft of a model (.obj, .stl, .ply) or scene (.nff) to keep: a program, or aset "
     "render\n"
-    "FILE, draws any view of it. MODEL is read three times or so, more often with little memory; no object of it is held.\n"
+    "FILE, draws any view of it. MODEL is read three times or so, more often the less memory there is for what its voxels hold (up to\n"
+    "twenty times by default); no object of it is held. A model's own view shows all of it in square pictures and wider.\n"
     "\n"
     "  -o, --output FILE     FILE.h: a C header with the draft as a const array. Any other name, .draft say, or - for\n"
     "                        standard output: the draft's 32-bit words, the lowest byte first\n"

@@ -157,6 +157,10 @@ static bool piece_open(piece *p, const char *path) {
         tool_error(path, 0, "cannot open it: %s", strerror(errno));
         return false;
     }
+    if (!tool_input_note(p->file, path)) {
+        piece_close(p);
+        return false;
+    }
     int first = getc(p->file);
     bool opened;
     if (first == EOF) {

@@ -4,7 +4,7 @@
  *
  * The formats give themselves away: a PLY begins with its name; a binary STL has 84 bytes and 50 for each triangle that it
  * announces, a text one begins with "solid" and has a facet; an OBJ is lines of words, of which the first that is no comment
- * tells. NFF, whose v looks alike, needs its name.
+ * tells. NFF, whose v looks alike, needs its name. A baked draft begins with a word of its own.
  */
 #include "tool.h"
 
@@ -74,6 +74,9 @@ static bool is_obj(const char *at) {
 
 static tool_kind kind_of_bytes(const look *l) {
     const char *start = l->bytes + strspn(l->bytes, " \t\r\n");
+    if (strncmp(l->bytes, "TDSA", 4) == 0 || strncmp(l->bytes, "ASDT", 4) == 0) { /* the lowest byte first, or last */
+        return TOOL_KIND_DRAFT;
+    }
     if (strncmp(l->bytes, "ply", 3) == 0 && (l->bytes[3] == '\n' || l->bytes[3] == '\r')) {
         return TOOL_KIND_PLY;
     }
@@ -84,7 +87,7 @@ static tool_kind kind_of_bytes(const look *l) {
 }
 
 tool_kind tool_kind_of(const char *path) {
-    static const char *const extensions[] = {".nff", ".obj", ".stl", ".ply"};
+    static const char *const extensions[] = {".nff", ".obj", ".stl", ".ply", ".draft"};
     look l;
     for (unsigned i = 0; i < sizeof extensions / sizeof extensions[0]; i++) {
         if (tool_has_extension(path, extensions[i])) {

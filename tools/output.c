@@ -3,7 +3,7 @@
  *
  * open: FOLDER/.aset-XXXXXX  --write-->  close: rename to FOLDER/NAME      failure, signal: unlink
  *
- * A scene, model or draft that is read, or a file that another output becomes, is no place for an output: it would be lost. What has
+ * A scene, model, draft or picture that is read, or a file that another output becomes, is no place for an output: it would be lost. What has
  * been read is remembered by device and number, where an output goes by its folder's and the name in it.
  *
  * Invariant: places[i].used is set exactly while the file named in places[i].temporary is ours and not yet renamed or

@@ -447,6 +447,10 @@ bool tool_image_read(tool_image *image, const char *path) {
         tool_error(path, 0, "cannot open it: %s", strerror(errno));
         return false;
     }
+    if (!tool_input_note(source.file, path)) {
+        (void)fclose(source.file);
+        return false;
+    }
     int first = getc(source.file);
     if (first == EOF) {
         source_error(&source, ferror(source.file) != 0 ? strerror(errno) : "the file is empty");

@@ -202,30 +202,68 @@ static bool take_block(prepared *p, const settings *s) {
     return true;
 }
 
+/* A draft made in so much memory, to see whether it is enough. */
+typedef struct draft_trial {
+    aset_status status;
+    bool told;
+    size_t missing, peak;
+} draft_trial;
+
+static draft_trial try_draft(const prepared *p, const settings *s, tool_source *source, const aset_counter *counter,
+                             uint64_t memory) {
+    draft_trial t = {ASET_ERR_ARGUMENT, false, 0, 0};
+    prepared more;
+    settings rich = *s;
+    memset(&more, 0, sizeof more);
+    more.path = p->path;
+    more.is_drafted = true;
+    rich.memory = memory;
+    t.told = !take_block(&more, &rich);
+    if (!t.told) {
+        t.status = p->is_streamed ? fill_streamed(&more, &rich, source, counter, &t.told)
+                                  : fill_arena(&more, &rich, source, &counter->counts, &t.told);
+    }
+    t.missing = more.arena.missing;
+    t.peak = more.arena.peak;
+    prepare_free(&more);
+    return t;
+}
+
+/* Trials that take no time worth speaking of: this many objects, and divisions of the longest axis, at the most. */
+#define NEED_OBJECTS 20000u
+#define NEED_DIVISIONS 128u
+
+static bool is_quick(const settings *s, const aset_counter *counter) {
+    uint32_t longest = s->grid[0] > s->grid[1] ? s->grid[0] : s->grid[1];
+    longest = longest > s->grid[2] ? longest : s->grid[2];
+    return counter->counts.objects <= NEED_OBJECTS && longest <= NEED_DIVISIONS;
+}
+
 /*
- * The error line of a draft in too little memory. What is missing is known better with each try: so until it is enough. missing:
- * of the try before.
+ * The error line of a draft in too little memory. What is missing is known better with each try: so until it is enough. That is
+ * for few passes over the source, and what more of them get by with is known from no pass: so then, if trials are quick, halfway between
+ * what is too little and what is enough, until these are an eighth apart; else what the last trial took. missing: of the try before.
  */
 static void tell_draft_need(const prepared *p, const settings *s, tool_source *source, const aset_counter *counter,
                             size_t missing) {
-    settings rich = *s;
-    aset_status status = ASET_ERR_NOMEM;
-    bool told = false;
-    while (status == ASET_ERR_NOMEM) {
-        prepared more;
-        memset(&more, 0, sizeof more);
-        more.path = p->path;
-        more.is_drafted = true;
-        rich.memory += missing;
-        told = !take_block(&more, &rich);
-        status = told            ? ASET_ERR_ARGUMENT
-                 : p->is_streamed ? fill_streamed(&more, &rich, source, counter, &told)
-                                  : fill_arena(&more, &rich, source, &counter->counts, &told);
-        missing = more.arena.missing;
-        prepare_free(&more);
+    uint64_t least = s->memory, enough = s->memory;
+    draft_trial t = {ASET_ERR_NOMEM, false, missing, 0};
+    while (t.status == ASET_ERR_NOMEM) {
+        enough += t.missing;
+        t = try_draft(p, s, source, counter, enough);
     }
-    if (!told) {
-        tool_error(source->path, 0, "the draft needs %" PRIu64 " bytes, has %" PRIu64, rich.memory, s->memory);
+    while (t.status == ASET_OK || t.status == ASET_ERR_NOMEM) {
+        enough = t.status == ASET_OK && t.peak < enough ? t.peak : enough;
+        if (!is_quick(s, counter) || enough - least <= enough / 8) {
+            tool_error(source->path, 0, "the draft needs %" PRIu64 " bytes, has %" PRIu64, enough, s->memory);
+            return;
+        }
+        uint64_t middle = least + (enough - least) / 2;
+        t = try_draft(p, s, source, counter, middle);
+        *(t.status == ASET_OK ? &enough : &least) = middle;
+    }
+    if (!t.told) {
+        tool_error(source->path, 0, "%s", aset_status_text(t.status));
     }
 }
 
@@ -409,7 +447,8 @@ static bool prepare_source(prepared *p, const settings *s) {
 bool prepare(prepared *p, const settings *s, const char *path) {
     memset(p, 0, sizeof *p);
     p->path = path;
-    if (!(tool_has_extension(path, ".draft") ? prepare_baked(p, s) : prepare_source(p, s))) {
+    bool is_draft = strcmp(path, "-") != 0 && tool_kind_of(path) == TOOL_KIND_DRAFT;
+    if (!(is_draft ? prepare_baked(p, s) : prepare_source(p, s))) {
         prepare_free(p);
         return false;
     }

@@ -21,7 +21,7 @@ for row in "snow 100" "snow 30" "gears 48" "tetra 64"; do
     least() { # words: the bytes that render asks for
         "$aset" render "$dir/$scene.nff" "$@" --grid "$grid" --memory 1 2>&1 | sed -n 's/.* needs \([0-9]*\) bytes.*/\1/p'
     }
-    ways="exact:-m,mset aset:-m,aset draft:-m,aset,--approx-depth,0"
+    ways="exact:-m,mset aset:-m,aset draft:-m,aset,--approx-depth,0 planes:-m,aset,--approx-depth,0,--cells,plane"
     rm -f "$dir"/*.times
     for run in $(seq "$runs"); do
         for way in $ways; do
@@ -39,7 +39,8 @@ for row in "snow 100" "snow 30" "gears 48" "tetra 64"; do
         case $name in
         exact) label="exact (MSET)" ;;
         aset) label="approximate from the second ray on" ;;
-        *) label="everything approximate" ;;
+        draft) label="everything approximate" ;;
+        *) label="everything, as a draft of planes" ;;
         esac
         db=$("$aset" compare --json "$dir/$scene-exact.png" "$dir/$scene-$name.png" | sed -n 's/.*"psnr": *\([0-9.]*\).*/\1/p')
         [ $name = exact ] && db="" || db="$(printf %.1f "$db") dB"

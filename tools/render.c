@@ -104,7 +104,7 @@ static const struct option longs[] = {
 typedef struct request {
     settings settings;
     const char *scene, *output, *stats;
-    bool report, quiet, is_png, has_rows, has_approx, has_approx_depth, wants_help, is_aset;
+    bool report, quiet, is_png, has_rows, has_approx, has_cells, has_approx_depth, wants_help, is_aset;
     uint32_t first_row, end_row;
 } request;
 
@@ -161,6 +161,7 @@ static bool parse_more(request *r, int option) {
             return false;
         }
         s->cells = (settings_cells)word;
+        r->has_cells = true;
         return true;
     case OPTION_CURTAIL: return tool_parse_real("--curtail", optarg, 0, 1e6, &s->curtail);
     case OPTION_CURTAIL_WHEN:
@@ -260,6 +261,11 @@ static bool set_baked(request *r) {
         tool_error(NULL, 0, "--approx: %s is a draft, expected --approx all --approx-depth 0, or neither", r->scene);
         return false;
     }
+    if (r->has_cells && s->cells == CELLS_FLAT) {
+        tool_error(NULL, 0, "--cells: %s is a draft, expected plane or normal, or for flat cells the model that it was baked from",
+                   r->scene);
+        return false;
+    }
     s->approx_kinds = ASET_ALL_KINDS;
     s->approx_depth = 0;
     s->cells = s->cells == CELLS_FLAT ? CELLS_PLANE : s->cells;
@@ -286,7 +292,8 @@ static bool parse_request(request *r, int argc, char **argv) {
     if (r->is_aset && !r->has_approx) {
         r->settings.approx_kinds = ASET_ALL_KINDS;
     }
-    return (!tool_has_extension(r->scene, ".draft") || set_baked(r)) && check_request(r);
+    bool is_draft = strcmp(r->scene, "-") != 0 && tool_kind_of(r->scene) == TOOL_KIND_DRAFT;
+    return (!is_draft || set_baked(r)) && check_request(r);
 }
 
 /* Rows that a thread draws at a time of a draft, whose beams go through eight rows' voxels. */

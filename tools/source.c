@@ -341,8 +341,12 @@ bool tool_source_open(tool_source *source, const char *path) {
         return false;
     }
     if (kind == TOOL_KIND_NONE) {
-        tool_error(path, 0, "neither a scene by its name nor a model by its first bytes, expected one that ends in .nff, .obj, .stl "
-                            "or .ply");
+        tool_error(path, 0, "neither a scene by its name nor a model or draft by its first bytes, expected one that ends in .nff, "
+                            ".obj, .stl, .ply or .draft");
+        return false;
+    }
+    if (kind == TOOL_KIND_DRAFT) {
+        tool_error(path, 0, "a baked draft, which aset render draws; expected the scene or model that it was baked from");
         return false;
     }
     source->format = (tool_format)(kind - TOOL_KIND_NFF);

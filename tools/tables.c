@@ -134,7 +134,12 @@ static void print_table_1(const page *p) {
         board_add(&b, "%u", (unsigned)q->depth);
         pair(&b, r->primary_share, share, 2);
         pair(&b, quotient(1.0, r->primary_share), 1.0 / share, 2);
-        board_shown(&b, quotient(1.0, r->time_ratio), q->seconds[BY_MSET] / q->seconds[BY_ASET], 2);
+        double won = q->seconds[BY_MSET] / q->seconds[BY_ASET];
+        if (r->rounds > 0) {
+            board_shown(&b, quotient(1.0, r->time_ratio), won, 2);
+        } else {
+            board_pair(&b, 0.0, won, 2, false);
+        }
         pair(&b, r->mset_s, 0.0, 3);
         pair(&b, r->build_s[BY_MSET], 0.0, 4);
         pair(&b, r->build_s[BY_ASET], 0.0, 4);
@@ -262,10 +267,17 @@ static void print_page(const page *p) {
     }
     (void)fprintf(p->stream,
                   "Measured, the published figure in brackets; * where a ratio differs by more than a quarter, and a\n"
-                  "line below says why. %u x %u pixels, one thread; times are of the processor, medians of %u rounds in\n"
-                  "which every picture is drawn in turn; a time is that of building and drawing, rays a second and\n"
-                  "shares are of drawing alone.\n\n",
-                  (unsigned)p->side, (unsigned)p->side, (unsigned)p->rounds);
+                  "line below says why. %u x %u pixels, one thread; ",
+                  (unsigned)p->side, (unsigned)p->side);
+    if (p->rounds > 0) {
+        (void)fprintf(p->stream,
+                      "times are of the processor, medians of %u rounds in\n"
+                      "which every picture is drawn in turn; a time is that of building and drawing, rays a second and\n"
+                      "shares are of drawing alone.\n\n",
+                      (unsigned)p->rounds);
+    } else {
+        (void)fprintf(p->stream, "no times were taken.\n\n");
+    }
     print_readings(p);
     print_table_1(p);
     print_table_2(p);

@@ -183,11 +183,11 @@ void tool_image_free(tool_image *image);
 
 /* --- kind.c: what a file is --- */
 
-typedef enum tool_kind { TOOL_KIND_NONE, TOOL_KIND_NFF, TOOL_KIND_OBJ, TOOL_KIND_STL, TOOL_KIND_PLY } tool_kind;
+typedef enum tool_kind { TOOL_KIND_NONE, TOOL_KIND_NFF, TOOL_KIND_OBJ, TOOL_KIND_STL, TOOL_KIND_PLY, TOOL_KIND_DRAFT } tool_kind;
 
 /*
- * By the name's ending, in either case; a plain file whose name has none of these four is opened, and its first bytes tell
- * whether it is a model. NONE: neither does. No error line.
+ * By the name's ending, in either case; a plain file whose name has none of these five is opened, and its first bytes tell
+ * whether it is a model or a draft. NONE: neither does. No error line.
  */
 tool_kind tool_kind_of(const char *path);
 
