@@ -334,6 +334,7 @@ thumb_refuses() {
     refuses 2 "aset: thumb: " thumb m
     refuses 2 "aset: thumb: " thumb -o t
     refuses 2 "aset: thumb: " thumb m m -o t
+    refuses 2 "aset: thumb: --output: " thumb m -o -
     refuses 2 "aset: thumb: --size: " thumb m -o t -s 0
     refuses 2 "aset: thumb: --size: " thumb m -o t -s 5x
     refuses 2 "aset: thumb: --size: " thumb m -o t -s 70000

@@ -1203,6 +1203,7 @@ trade_page() {
 trade_refuses() {
     wrong_words trade
     wrong_words trade balls balls
+    wrong_words trade balls -o -
     wrong_words trade balls --sizes 8x8,8x8
     wrong_words trade balls --grids 8,,9
     wrong_words trade balls --grids 8,8

@@ -52,7 +52,7 @@ bool settings_view(aset_view *view, const settings *s, const char *path) {
     aset_counter ignored;
     aset_sink check = aset_counter_sink(&ignored);
     if (check.view(check.context, view) != ASET_OK) {
-        tool_error(path, 0, "the view has no direction, or up lies along it; expected other --from, --at or --up");
+        tool_error(path, 0, "the view has no direction, up lies along it, or it is beyond 10^30; expected other --from, --at or --up");
         return false;
     }
     return true;

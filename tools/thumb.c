@@ -295,6 +295,10 @@ static bool parse_request(request *r, int argc, char **argv) {
         tool_error(NULL, 0, "thumb: expected two folders: aset thumb FOLDER -o FOLDER");
         return false;
     }
+    if (strcmp(r->output, "-") == 0) {
+        tool_error(NULL, 0, "thumb: --output: thumbnails are files in a folder, expected its name (./- for one called -)");
+        return false;
+    }
     r->folder = argv[optind];
     return true;
 }

@@ -132,7 +132,13 @@ enum { OPTION_GRIDS = 256, OPTION_DEPTHS, OPTION_CELLS, OPTION_ROUNDS, OPTION_QU
 
 static bool parse_option(trade_words *w, int option) {
     switch (option) {
-    case 'o': w->directory = optarg; return true;
+    case 'o':
+        if (strcmp(optarg, "-") == 0) {
+            tool_error(NULL, 0, "trade: --output: the results are files in a folder, expected its name (./- for one called -)");
+            return false;
+        }
+        w->directory = optarg;
+        return true;
     case 'm': return parse_methods(w, optarg);
     case OPTION_GRIDS: w->n_grids = 0; return parse_list(w, "--grids", optarg, parse_grid);
     case OPTION_DEPTHS: w->n_depths = 0; return parse_list(w, "--octree-depths", optarg, parse_depth);
