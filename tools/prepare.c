@@ -246,7 +246,7 @@ static bool is_quick(const settings *s, const aset_counter *counter) {
  */
 static void tell_draft_need(const prepared *p, const settings *s, tool_source *source, const aset_counter *counter,
                             size_t missing) {
-    uint64_t least = s->memory, enough = s->memory;
+    uint64_t least = s->memory, enough = least;
     draft_trial t = {ASET_ERR_NOMEM, false, missing, 0};
     while (t.status == ASET_ERR_NOMEM) {
         enough += t.missing;
