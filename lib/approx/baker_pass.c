@@ -212,6 +212,10 @@ static aset_status start_stage(aset_baker *b) {
     if (b->report.kept != b->n_kept) {
         return ASET_ERR_GEOMETRY; /* not the same source as in the first pass */
     }
+#if ASET_RECENT < ASET_KEPT_MAX
+    /* A hostile build: in the words' order materials may repeat that were remembered in the source's. */
+    b->counter.counts.materials = b->counter.counts.objects;
+#endif
     aset_status status = aset_scene_init(&b->stage, b->arena, &b->counter.counts);
     if (status == ASET_OK) {
         b->stage_sink = aset_scene_sink(&b->stage);
