@@ -727,6 +727,14 @@ static void test_space__refuses_bad_arguments(void **state) {
     stage_space(&s, &space, &aset_mset, ASET_DIVISIONS_MAX, 1, 2); /* the largest allowed */
     stage_close(&s);
     model_free(&m);
+    model_random(&m, &r, 300, 5, 0.1, 1); /* more than a kilobyte of the stack can measure a tree over */
+    stage_open_model(&s, &m, ROOM);
+    assert_int_equal(aset_space_measure(&size, &s.scene, &aset_octree, NULL, NULL), ASET_ERR_NOMEM);
+    assert_true(size.scratch > 1024);
+    before.scratch = size.scratch;
+    assert_memory_equal(&size, &before, sizeof size);
+    stage_close(&s);
+    model_free(&m);
 }
 
 #if ASET_WITH_SPHERES
