@@ -910,21 +910,32 @@ static void test_draft__beams_from_far_away_and_from_a_face(void **state) {
     }
 }
 
-static void test_draft__beams_follow_the_draft_and_the_view(void **state) {
-    (void)state;
-    static unsigned char first[2][SIDE * SIDE * 4], again[SIDE * SIDE * 4];
-    guarded memory = guarded_open((size_t)1 << 18);
+/* A scratch whose beams are kept from picture to picture, and where a picture goes. */
+typedef struct beam_studio {
+    guarded memory;
     aset_arena arena;
     aset_scratch scratch;
     aset_beams beams;
     aset_picture picture;
-    memset(&picture, 0, sizeof picture);
-    picture.width = picture.height = SIDE;
-    picture.format = ASET_RGBA8888;
-    picture.stride = 4 * (size_t)SIDE;
-    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
-    assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
-    assert_int_equal(aset_beams_init(&beams, 4000, &arena), ASET_OK);
+} beam_studio;
+
+static void beam_studio_open(beam_studio *b, uint32_t side, uint32_t voxels) {
+    memset(b, 0, sizeof *b);
+    b->memory = guarded_open((size_t)1 << 20);
+    b->picture.width = b->picture.height = side;
+    b->picture.format = ASET_RGBA8888;
+    b->picture.stride = 4 * (size_t)side;
+    assert_int_equal(aset_arena_init(&b->arena, b->memory.block, b->memory.size), ASET_OK);
+    assert_int_equal(aset_scratch_init(&b->scratch, 0, &b->arena), ASET_OK);
+    assert_int_equal(aset_beams_init(&b->beams, voxels, &b->arena), ASET_OK);
+    b->scratch.beams = &b->beams;
+}
+
+static void test_draft__beams_follow_the_draft_and_the_view(void **state) {
+    (void)state;
+    static unsigned char first[2][SIDE * SIDE * 4], again[SIDE * SIDE * 4];
+    beam_studio b;
+    beam_studio_open(&b, SIDE, 4000);
     for (uint64_t i = 0; i < 8; i++) { /* the same beams for one draft, view and size after the other */
         random_state r = random_start(seed_of(i));
         model m;
@@ -934,18 +945,18 @@ static void test_draft__beams_follow_the_draft_and_the_view(void **state) {
         aset_tracer tracer = tracer_of(&d.draft);
         for (int k = 0; k < 2; k++) {
             aset_view view = any_view(&r, (uint64_t)k * 2);
-            picture.pixels = first[k];
-            scratch.beams = NULL;
-            assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, SIDE, &scratch, NULL), ASET_OK);
-            picture.pixels = again;
-            scratch.beams = &beams;
-            assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, SIDE, &scratch, NULL), ASET_OK);
+            b.picture.pixels = first[k];
+            b.scratch.beams = NULL;
+            assert_int_equal(aset_render_rows(&tracer, &view, &b.picture, 0, SIDE, &b.scratch, NULL), ASET_OK);
+            b.picture.pixels = again;
+            b.scratch.beams = &b.beams;
+            assert_int_equal(aset_render_rows(&tracer, &view, &b.picture, 0, SIDE, &b.scratch, NULL), ASET_OK);
             check(memcmp(first[k], again, sizeof again) == 0, SEED ": %d", r.seed, k);
         }
         drawn_close(&d);
         model_free(&m);
     }
-    guarded_close(&memory);
+    guarded_close(&b.memory);
 }
 
 /* The inverse of an odd number among the numbers of 32 bits. */
@@ -989,20 +1000,9 @@ static void test_draft__beams_of_a_draft_that_was_exchanged(void **state) {
     bake(&large, &m, 12, 12, 12, true);
     bake(&small, &one, 2, 2, 2, true);
     assert_true(large.draft.n_words > small.draft.n_words);
-    guarded memory = guarded_open((size_t)1 << 20);
-    aset_arena arena;
-    aset_scratch scratch;
-    aset_beams beams;
-    aset_picture picture;
-    memset(&picture, 0, sizeof picture);
-    picture.width = picture.height = SIDE;
-    picture.format = ASET_RGBA8888;
-    picture.stride = 4 * (size_t)SIDE;
-    picture.pixels = pixels;
-    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
-    assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
-    assert_int_equal(aset_beams_init(&beams, 8000, &arena), ASET_OK);
-    scratch.beams = &beams;
+    beam_studio b;
+    beam_studio_open(&b, SIDE, 8000);
+    b.picture.pixels = pixels;
     aset_view view = view_from(dvec_real(dvec_make(9, 6, 4)));
     copy_words(o, large.draft.words, large.draft.n_words);
     for (int k = 0; k < 2; k++) {
@@ -1018,14 +1018,14 @@ static void test_draft__beams_of_a_draft_that_was_exchanged(void **state) {
         aset_tracer tracer = tracer_of(&o->draft);
         aset_statistics statistics = {0};
         /* few rows, so that the voxels before them are still those of the first time */
-        assert_int_equal(aset_render_rows(&tracer, &view, &picture, SIDE / 16 * 8, 8, &scratch, &statistics), ASET_OK);
+        assert_int_equal(aset_render_rows(&tracer, &view, &b.picture, SIDE / 16 * 8, 8, &b.scratch, &statistics), ASET_OK);
         /* of a voxel that the draft does not have, no more than six facets are asked */
         check(statistics.tests <= 6 * statistics.nonempty_visited, "%" PRIu64 " of %" PRIu64, statistics.tests,
               statistics.nonempty_visited);
     }
     free(o->words);
     free(o);
-    guarded_close(&memory);
+    guarded_close(&b.memory);
     drawn_close(&small);
     drawn_close(&large);
     model_free(&one);
@@ -1033,11 +1033,11 @@ static void test_draft__beams_of_a_draft_that_was_exchanged(void **state) {
 }
 
 #if ASET_WITH_POLYGONS
-/* A cube in whole numbers, seen along diagonals: rays that enter and leave its box, and cross its planes, at one t. */
 static aset_vec3 real3(double x, double y, double z) {
     return dvec_real(dvec_make(x, y, z));
 }
 
+/* A cube in whole numbers, seen along diagonals: rays that enter and leave its box, and cross its planes, at one t. */
 static void test_draft__beams_and_rays_agree_where_planes_are_crossed_at_once(void **state) {
     (void)state;
     model m;
@@ -1061,13 +1061,8 @@ static void test_draft__beams_and_rays_agree_where_planes_are_crossed_at_once(vo
     assert_int_equal(open_copy(o), ASET_OK);
     aset_tracer tracer = tracer_of(&o->draft);
     tracer.depth = 1;
-    guarded memory = guarded_open((size_t)1 << 18);
-    aset_arena arena;
-    aset_scratch scratch;
-    aset_beams beams;
-    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
-    assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
-    assert_int_equal(aset_beams_init(&beams, 4096, &arena), ASET_OK);
+    beam_studio b;
+    beam_studio_open(&b, 1, 4096);
     uint32_t met = 0;
     for (int i = 0; i < 13 * 13 * 8; i++) {
         aset_real from[3] = {(aset_real)(16 + i % 13 * 4), (aset_real)(16 + i / 13 % 13 * 4), 40}, step[3] = {-20, -20, -20};
@@ -1082,10 +1077,10 @@ static void test_draft__beams_and_rays_agree_where_planes_are_crossed_at_once(vo
         unsigned char pixels[2][4];
         aset_statistics statistics[2] = {{0}, {0}};
         for (int k = 0; k < 2; k++) {
-            aset_picture picture = {.width = 1, .height = 1, .format = ASET_RGBA8888, .transparent = true, .stride = 4};
-            picture.pixels = pixels[k];
-            scratch.beams = k == 0 ? NULL : &beams;
-            assert_int_equal(aset_render_rows(&tracer, &view, &picture, 0, 1, &scratch, &statistics[k]), ASET_OK);
+            b.picture.transparent = true;
+            b.picture.pixels = pixels[k];
+            b.scratch.beams = k == 0 ? NULL : &b.beams;
+            assert_int_equal(aset_render_rows(&tracer, &view, &b.picture, 0, 1, &b.scratch, &statistics[k]), ASET_OK);
         }
         check(memcmp(pixels[0], pixels[1], 4) == 0 && statistics[0].nonempty_visited == statistics[1].nonempty_visited,
               "%d: alpha %d and %d", i, pixels[0][3], pixels[1][3]);
@@ -1094,7 +1089,7 @@ static void test_draft__beams_and_rays_agree_where_planes_are_crossed_at_once(vo
     check(met > 100, "%" PRIu32, met);
     free(o->words);
     free(o);
-    guarded_close(&memory);
+    guarded_close(&b.memory);
     drawn_close(&d);
     model_free(&m);
 }

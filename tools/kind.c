@@ -96,3 +96,7 @@ tool_kind tool_kind_of(const char *path) {
     }
     return look_at(&l, path) ? kind_of_bytes(&l) : TOOL_KIND_NONE;
 }
+
+bool tool_is_draft(const char *path) {
+    return strcmp(path, "-") != 0 && tool_kind_of(path) == TOOL_KIND_DRAFT;
+}

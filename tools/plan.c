@@ -84,8 +84,8 @@ static bool tell(const request *r, const plan *p, const measured *m) {
         return false;
     }
     if (s->psnr < r->wish.error_db) {
-        tool_error(r->scene, 0, "no setting within %" PRIu64 " bytes has %g dB, the best of those that were probed has about %.1f dB", r->wish.memory,
-                   r->wish.error_db, s->psnr);
+        tool_error(r->scene, 0, "no setting within %" PRIu64 " bytes has %g dB, the best of those that were probed has about %.1f dB",
+                   r->wish.memory, r->wish.error_db, s->psnr);
         return false;
     }
     if (!is_standard(r->header)) {

@@ -359,8 +359,10 @@ static bool any_fits(const plan *p, const plan_wish *wish) {
     return false;
 }
 
-/* Does something exact fit that is no slower than brute force might be? An approximation may miss the error asked for, or be outdone. */
-static bool any_quick(const plan *p) {
+/*
+ * Does something exact fit that is no slower than brute force might be? An approximation may miss the error asked for, or be outdone.
+ */
+static bool any_exact_quick(const plan *p) {
     for (int i = 0; i < p->n; i++) {
         if (p->settings[i].fits && p->settings[i].approx_kinds == 0 && p->settings[i].seconds < QUICK * p->exact_seconds) {
             return true;
@@ -470,7 +472,7 @@ static bool probe_all(plan *p, probing *q) {
             }
         }
     }
-    return any_quick(p) || p->exact_bytes > q->wish->memory || probe(p, q, &aset_brute, one);
+    return any_exact_quick(p) || p->exact_bytes > q->wish->memory || probe(p, q, &aset_brute, one);
 }
 
 /* --- the choice --- */

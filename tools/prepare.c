@@ -447,8 +447,7 @@ static bool prepare_source(prepared *p, const settings *s) {
 bool prepare(prepared *p, const settings *s, const char *path) {
     memset(p, 0, sizeof *p);
     p->path = path;
-    bool is_draft = strcmp(path, "-") != 0 && tool_kind_of(path) == TOOL_KIND_DRAFT;
-    if (!(is_draft ? prepare_baked(p, s) : prepare_source(p, s))) {
+    if (!(tool_is_draft(path) ? prepare_baked(p, s) : prepare_source(p, s))) {
         prepare_free(p);
         return false;
     }

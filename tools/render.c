@@ -292,8 +292,7 @@ static bool parse_request(request *r, int argc, char **argv) {
     if (r->is_aset && !r->has_approx) {
         r->settings.approx_kinds = ASET_ALL_KINDS;
     }
-    bool is_draft = strcmp(r->scene, "-") != 0 && tool_kind_of(r->scene) == TOOL_KIND_DRAFT;
-    return (!is_draft || set_baked(r)) && check_request(r);
+    return (!tool_is_draft(r->scene) || set_baked(r)) && check_request(r);
 }
 
 /* Rows that a thread draws at a time of a draft, whose beams go through eight rows' voxels. */

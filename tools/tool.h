@@ -190,6 +190,7 @@ typedef enum tool_kind { TOOL_KIND_NONE, TOOL_KIND_NFF, TOOL_KIND_OBJ, TOOL_KIND
  * whether it is a model or a draft. NONE: neither does. No error line.
  */
 tool_kind tool_kind_of(const char *path);
+bool tool_is_draft(const char *path); /* standard input is none */
 
 /* --- progress.c --- */
 

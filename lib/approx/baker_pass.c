@@ -55,8 +55,6 @@ static void choose_divisions(aset_baker *b, size_t bytes, uint32_t longest_max) 
 
 /* Rounding of the words' floats, whatever a real is here. */
 #define WORD_UNIT R(5.9604644775390625e-8)
-/* The least steps between neighbouring floats for a model whose reals tell its parts apart. */
-#define STEPS_LEAST 64
 
 /* The box of what the cells hold, a little larger, in numbers that the words can say. False: they can't. */
 static bool place_cells(aset_baker *b) {

@@ -41,6 +41,9 @@
 #define REAL_DENORMAL (REAL_LEAST * (2 * REAL_UNIT)) /* the smallest of all */
 #define REAL_INFINITY ((aset_real)INFINITY)
 
+/* The least steps between neighbouring coordinates that a scene or a model must be long; or it is one point, which needs none. */
+#define STEPS_LEAST 64
+
 /*
  * What macros do not show: that a product and a sum are rounded each by itself, to nearest, and that denormals are numbers. False
  * where a compiler's flags or the program's own settings have it otherwise.

@@ -27,9 +27,6 @@
  */
 #define RADIUS_SHARE R(128 * (FLT_EPSILON / 2))
 
-/* The least steps between neighbouring coordinates that a model must be long, as a scene must (slices.c); or it is a point. */
-#define STEPS_LEAST 64
-
 typedef struct stage {
     const aset_sink *sink;
     aset_up up;
@@ -48,6 +45,7 @@ static aset_real radius_of(aset_vec3 low, aset_vec3 high, aset_vec3 centre) {
     return radius >= RADIUS_LEAST ? radius : 1;
 }
 
+/* The rule of aset_slices_precise, for the model alone. */
 static bool is_precise(aset_vec3 low, aset_vec3 high) {
     aset_real size = vec_largest(vec_sub(high, low)), largest = real_max(vec_largest(low), vec_largest(high));
     return size == 0 || size >= STEPS_LEAST * 2 * REAL_UNIT * largest;

@@ -45,9 +45,6 @@ static aset_real cube_root(aset_real x) {
     return root;
 }
 
-/* The least steps between neighbouring coordinates that a scene must be long; or it is one point, which needs none. */
-#define STEPS_LEAST 64
-
 bool aset_slices_precise(const aset_scene *scene) {
     aset_real size = vec_largest(vec_sub(scene->high, scene->low));
     aset_real largest = real_max(vec_largest(scene->low), vec_largest(scene->high));
