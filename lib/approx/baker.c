@@ -194,21 +194,32 @@ static aset_status measure_triangle(aset_baker *b, const aset_real *x) {
 /* Triangles looked at together: their box is checked once. */
 #define CHUNK 64u
 
-/* n triangles, at most CHUNK, in the first pass. False, and nothing done, if one of them may have to be refused. */
-static bool measure_chunk(aset_baker *b, const aset_real *x, size_t n) {
-    aset_vec3 low, high;
-    aset_real diagonals[CHUNK], sum = 0;
-    box_of(x, &low, &high);
-    for (size_t i = 0; i < n; i++, x += 9) {
-        aset_vec3 from, to;
-        box_of(x, &from, &to);
-        low = vec_min(low, from);
-        high = vec_max(high, to);
-        aset_vec3 d = vec_sub(to, from);
-        diagonals[i] = vec_dot(d, d);
-        sum += x[0] + x[1] + x[2] + x[3] + x[4] + x[5] + x[6] + x[7] + x[8]; /* not finite if any is not */
+typedef struct chunk_box {
+    aset_real low[AXES], high[AXES], sum[AXES];
+} chunk_box;
+
+/* Grows the box by a triangle, of which ten numbers are read; its own extent. */
+static inline void grow(chunk_box *restrict box, aset_real *restrict extent, const aset_real *restrict x) {
+    for (int a = 0; a < AXES; a++) {
+        aset_real low = real_min(x[a], real_min(x[a + 3], x[a + 6])), high = real_max(x[a], real_max(x[a + 3], x[a + 6]));
+        box->low[a] = real_min(box->low[a], low);
+        box->high[a] = real_max(box->high[a], high);
+        box->sum[a] += x[a] + x[a + 3] + x[a + 6]; /* not finite if any is not */
+        extent[a] = high - low;
     }
-    if (!(vec_largest(low) <= COORDINATE_MAX && vec_largest(high) <= COORDINATE_MAX && real_finite(sum))) {
+}
+
+/* n triangles, at most CHUNK and others behind them, in the first pass. False, and nothing done, if one may have to be refused. */
+static bool measure_chunk(aset_baker *b, const aset_real *x, size_t n) {
+    chunk_box box = {{x[0], x[1], x[2]}, {x[0], x[1], x[2]}, {0, 0, 0}};
+    aset_real diagonals[CHUNK];
+    for (size_t i = 0; i < n; i++) {
+        aset_real d[AXES];
+        grow(&box, d, x + 9 * i);
+        diagonals[i] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    }
+    aset_vec3 low = vec(box.low[0], box.low[1], box.low[2]), high = vec(box.high[0], box.high[1], box.high[2]);
+    if (check_box(low, high) != ASET_OK || !vec_finite(vec(box.sum[0], box.sum[1], box.sum[2]))) {
         return false;
     }
     fit(b, low, high);
@@ -226,8 +237,9 @@ static bool measure_chunk(aset_baker *b, const aset_real *x, size_t n) {
 static aset_status measure_triangles(aset_baker *b, const aset_real *x, size_t n) {
     aset_status status = ASET_OK;
     while (n > 0 && status == ASET_OK) {
-        size_t some = n < CHUNK ? n : CHUNK;
-        if (b->phase != PHASE_MEASURE || !measure_chunk(b, x, some)) {
+        size_t some = n <= CHUNK ? n - 1 : CHUNK; /* the last one of all is measured alone */
+        if (some == 0 || b->phase != PHASE_MEASURE || !measure_chunk(b, x, some)) {
+            some = some > 0 ? some : 1;
             for (size_t i = 0; i < some && status == ASET_OK; i++) {
                 status = measure_triangle(b, x + 9 * i);
             }
@@ -238,6 +250,18 @@ static aset_status measure_triangles(aset_baker *b, const aset_real *x, size_t n
     return status;
 }
 
+/* How many triangles come before the first that is kept. */
+static size_t first_kept(const aset_baker *b, const aset_real *x, size_t n) {
+    for (size_t i = 0; i < n && b->n_kept > 0; i++, x += 9) {
+        aset_vec3 low, high;
+        box_of(x, &low, &high);
+        if (is_kept(b, low, high, 3)) {
+            return i;
+        }
+    }
+    return n;
+}
+
 aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates, size_t n) {
     if (baker == NULL || (coordinates == NULL && n > 0)) {
         return ASET_ERR_ARGUMENT;
@@ -246,19 +270,16 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
     if (status != ASET_OK || baker->phase != PHASE_BAKE) {
         return status != ASET_OK ? status : measure_triangles(baker, coordinates, n);
     }
-    if (baker->n_kept == 0) {
-        aset_sheet_triangles(baker, coordinates, n);
-        baker->taken += n;
-        return ASET_OK;
-    }
-    for (size_t i = 0; i < n && status == ASET_OK; i++, coordinates += 9) {
-        aset_vec3 low, high;
-        box_of(coordinates, &low, &high);
-        if (is_kept(baker, low, high, 3)) {
+    while (n > 0 && status == ASET_OK) {
+        size_t others = first_kept(baker, coordinates, n);
+        aset_sheet_triangles(baker, coordinates, others);
+        baker->taken += others;
+        coordinates += 9 * others;
+        n -= others;
+        if (n > 0) {
             status = take_triangle(baker, coordinates);
-        } else {
-            aset_sheet_triangle(baker, coordinates);
-            baker->taken++;
+            coordinates += 9;
+            n--;
         }
     }
     return status;

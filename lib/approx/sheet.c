@@ -12,17 +12,6 @@
 
 #if ASET_WITH_DRAFTS
 
-/* A coordinate on an axis, in columns. */
-static inline aset_real to_column(const aset_baker *b, int a, aset_real x) {
-    return (x - b->origin[a]) * b->scale[a];
-}
-
-static inline void to_columns(const aset_baker *b, const aset_real *point, aset_real *column) {
-    for (int a = 0; a < 3; a++) {
-        column[a] = to_column(b, a, point[a]);
-    }
-}
-
 /* A polygon's plane over the columns (u, v) of the side that it faces. */
 typedef struct sheet {
     int a, u, v;
@@ -34,11 +23,7 @@ typedef struct sheet {
 } sheet;
 
 /* The bin of a voxel's side, NULL if it is not of this pass's blocks; kept as the side's last one, which the next sample mostly wants. */
-static bin *find_bin(aset_baker *b, const sheet *s, uint32_t key, uint32_t u, uint32_t v, uint32_t a) {
-    uint32_t at[3];
-    at[s->u] = u;
-    at[s->v] = v;
-    at[s->a] = a;
+static bin *find_bin(aset_baker *b, const sheet *s, uint32_t key, const uint32_t at[3]) {
     uint32_t block = baker_block_at(b, at[0], at[1], at[2]);
     bin *it = block >= b->floor_block && block < b->ceiling_block ? aset_bins_find(b, key) : NULL;
     b->recent_keys[s->side] = key; /* finding may have moved all bins, which empties these */
@@ -48,14 +33,17 @@ static bin *find_bin(aset_baker *b, const sheet *s, uint32_t key, uint32_t u, ui
 
 /* One column's middle. */
 static void add_sample(aset_baker *b, const sheet *s, int32_t i, int32_t j) {
-    const uint32_t strides[3] = {6, 6 * b->n[0], 6 * b->n[0] * b->n[1]};
     aset_real du = (aset_real)i + R(0.5) - s->at_u, dv = (aset_real)j + R(0.5) - s->at_v;
     aset_real height = s->at_a + s->slope_u * du + s->slope_v * dv, top = (aset_real)b->n[s->a] * 4;
     height = height > 0 ? (height < top ? height : top) : 0;
     uint32_t k = (uint32_t)(int32_t)height / 4;
     k -= k == b->n[s->a];
-    uint32_t key = (uint32_t)i / 4 * strides[s->u] + (uint32_t)j / 4 * strides[s->v] + k * strides[s->a] + s->side;
-    bin *it = key == b->recent_keys[s->side] ? b->recent[s->side] : find_bin(b, s, key, (uint32_t)i / 4, (uint32_t)j / 4, k);
+    uint32_t at[3];
+    at[s->u] = (uint32_t)i / 4;
+    at[s->v] = (uint32_t)j / 4;
+    at[s->a] = k;
+    uint32_t key = ((at[2] * b->n[1] + at[1]) * b->n[0] + at[0]) * 6 + s->side;
+    bin *it = key == b->recent_keys[s->side] ? b->recent[s->side] : find_bin(b, s, key, at);
     if (it == NULL) {
         return;
     }
@@ -82,16 +70,22 @@ static int64_t to_units(aset_real slope) {
     return real_to_whole(slope * BIN_UNIT + (R(0.5) - (aset_real)(slope < 0)));
 }
 
-/* The first column whose middle is not below x, or how many there are; x of any size. */
-static inline int32_t first_column(aset_real x, uint32_t n) {
-    aset_real k = real_min(real_max(x - R(0.5), 0), (aset_real)(int32_t)(n * 4)); /* 0 if it is not a number */
+/* How many columns there are on an axis. */
+static inline aset_real columns_on(const aset_baker *b, int a) {
+    return (aset_real)(int32_t)(b->n[a] * 4);
+}
+
+/* The first column of n whose middle is not below x, or n; x of any size. */
+static inline int32_t first_column(aset_real x, aset_real n) {
+    aset_real k = real_min(real_max(x - R(0.5), 0), n); /* 0 if it is not a number */
     int32_t below = (int32_t)k;
     return below + ((aset_real)below < k);
 }
 
-/* u where the edge from low to high, which the row's middle lies between, crosses it. */
+/* u where the edge from low to high, which the row's middle lies between, crosses it: not beyond its ends, whatever rounding does. */
 static inline aset_real crossing(const aset_real *low, const aset_real *high, int u, int v, aset_real middle) {
-    return low[u] + (middle - low[v]) / (high[v] - low[v]) * (high[u] - low[u]);
+    aset_real at = low[u] + (middle - low[v]) / (high[v] - low[v]) * (high[u] - low[u]);
+    return real_min(real_max(at, real_min(low[u], high[u])), real_max(low[u], high[u]));
 }
 
 /* Whether the edge from p to q crosses the row's middle, and where: computed the same way from both sides of the edge. */
@@ -115,29 +109,29 @@ static void make_plane(sheet *s) {
     s->seen = true;
 }
 
-static inline void fill_span(aset_baker *b, sheet *s, aset_real from, aset_real to, int32_t row) {
-    int32_t column = first_column(from, b->n[s->u]), end = first_column(to, b->n[s->u]);
-    if (column < end && !s->seen) {
-        make_plane(s);
+/* Columns that are looked at one by one: the places of a span's ends are longer to find. */
+#define FEW_COLUMNS 3
+
+/* The columns whose middles lie between from and to, of those from first to end, which hold them all. */
+static inline void fill_span(aset_baker *b, sheet *s, aset_real from, aset_real to, int32_t row, int32_t first, int32_t end) {
+    if (end - first > FEW_COLUMNS) {
+        first = first_column(from, columns_on(b, s->u));
+        end = first_column(to, columns_on(b, s->u));
     }
-    for (; column < end; column++) {
+    for (int32_t column = first; column < end; column++) {
+        aset_real middle = (aset_real)column + R(0.5);
+        if (!(from <= middle && middle < to)) {
+            continue;
+        }
+        if (!s->seen) {
+            make_plane(s);
+        }
         add_sample(b, s, column, row);
     }
 }
 
-/* Rows of a triangle: two edges cross each. */
-static void fill_triangle_row(aset_baker *b, sheet *s, const aset_real *points, int32_t row) {
-    aset_real middle = (aset_real)row + R(0.5), at[3];
-    uint32_t n = 0;
-    n += crosses(points, points + 3, s->u, s->v, middle, &at[n]);
-    n += crosses(points + 3, points + 6, s->u, s->v, middle, &at[n]);
-    n += crosses(points + 6, points, s->u, s->v, middle, &at[n]);
-    if (n >= 2) {
-        fill_span(b, s, real_min(at[0], at[1]), real_max(at[0], at[1]), row);
-    }
-}
-
-static void fill_row(aset_baker *b, sheet *s, const aset_real *points, uint32_t n, int32_t row, aset_real *crossings) {
+static void fill_row(aset_baker *b, sheet *s, const aset_real *points, uint32_t n, int32_t row, int32_t first, int32_t end,
+                     aset_real *crossings) {
     aset_real middle = (aset_real)row + R(0.5);
     uint32_t count = 0;
     for (uint32_t i = 0; i < n; i++) {
@@ -152,8 +146,21 @@ static void fill_row(aset_baker *b, sheet *s, const aset_real *points, uint32_t 
         crossings[k] = at;
     }
     for (uint32_t i = 0; i + 1 < count; i += 2) {
-        fill_span(b, s, crossings[i], crossings[i + 1], row);
+        fill_span(b, s, crossings[i], crossings[i + 1], row, first, end);
     }
+}
+
+/* The side that a surface faces. False: none. */
+static inline bool sheet_begin(sheet *s, const aset_real normal[3], const aset_real *corner) {
+    aset_real x = real_abs(normal[0]), y = real_abs(normal[1]), z = real_abs(normal[2]);
+    s->a = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+    s->u = s->a < 2 ? s->a + 1 : 0;
+    s->v = s->u < 2 ? s->u + 1 : 0;
+    s->normal = normal;
+    s->corner = corner;
+    s->side = (uint32_t)s->a * 2 + (normal[s->a] < 0);
+    s->seen = false;
+    return normal[s->a] != 0;
 }
 
 /* Newell's normal, from the first point so that nothing large cancels. */
@@ -168,112 +175,167 @@ static aset_vec3 normal_of(const aset_real *points, uint32_t n) {
     return normal;
 }
 
-/* A polygon whose columns reach from..to on each axis. */
-static void sample_sheet(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings, aset_vec3 facing,
-                         const int32_t from[3], const int32_t to[3]) {
+/* A polygon in columns, which reach from..to on each axis. */
+static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings, const int32_t from[3],
+                           const int32_t to[3]) {
+    aset_vec3 facing = normal_of(points, n);
     const aset_real normal[3] = {facing.x, facing.y, facing.z};
     sheet s;
-    aset_real x = real_abs(facing.x), y = real_abs(facing.y), z = real_abs(facing.z);
-    s.a = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
-    s.u = s.a < 2 ? s.a + 1 : 0;
-    s.v = s.u < 2 ? s.u + 1 : 0;
-    if (normal[s.a] == 0 || from[s.u] == to[s.u] || from[s.v] == to[s.v]) {
-        return;
-    }
-    s.normal = normal;
-    s.corner = points;
-    s.side = (uint32_t)s.a * 2 + (normal[s.a] < 0);
-    s.seen = false;
-    for (int32_t row = from[s.v]; row < to[s.v] && b->failure == ASET_OK; row++) {
-        if (n == 3) {
-            fill_triangle_row(b, &s, points, row);
-        } else {
-            fill_row(b, &s, points, n, row, crossings);
+    if (sheet_begin(&s, normal, points)) {
+        for (int32_t row = from[s.v]; row < to[s.v] && b->failure == ASET_OK; row++) {
+            fill_row(b, &s, points, n, row, from[s.u], to[s.u], crossings);
         }
+        b->report.unseen -= s.seen && b->floor_block == 0;
     }
-    b->report.unseen -= s.seen && b->floor_block == 0;
+}
+
+/* Not for triangles: these take aset_sheet_triangles. */
+static void take_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
+    int32_t from[3], to[3];
+    for (int a = 0; a < 3; a++) {
+        aset_real low = REAL_INFINITY, high = -REAL_INFINITY;
+        for (uint32_t i = 0; i < n; i++) {
+            aset_real x = (points[3 * i + (uint32_t)a] - b->origin[a]) * b->scale[a];
+            points[3 * i + (uint32_t)a] = x;
+            low = real_min(low, x);
+            high = real_max(high, x);
+        }
+        from[a] = first_column(low, columns_on(b, a));
+        to[a] = first_column(high, columns_on(b, a));
+    }
+    b->report.unseen += b->floor_block == 0; /* until it is seen */
+    if ((from[0] == to[0]) + (from[1] == to[1]) + (from[2] == to[2]) < 2) {
+        sample_polygon(b, points, n, crossings, from, to);
+    }
+}
+
+/* ---- triangles ---- */
+
+typedef struct frame {
+    aset_real origin[AXES], scale[AXES], columns[AXES]; /* columns: how many */
+} frame;
+
+/* In columns: corners, and the columns whose middles their box holds. */
+typedef struct triangle {
+    aset_real corners[3][AXES];
+    int32_t from[AXES], to[AXES];
+} triangle;
+
+static frame frame_of(const aset_baker *b) {
+    frame f;
+    for (int a = 0; a < AXES; a++) {
+        int axis = a < 3 ? a : 0;
+        f.origin[a] = b->origin[axis];
+        f.scale[a] = b->scale[axis];
+        f.columns[a] = columns_on(b, axis);
+    }
+    return f;
+}
+
+/* Reads ten numbers. */
+static inline void place_triangle(triangle *restrict t, const frame *restrict f, const aset_real *restrict points) {
+    aset_real *p = t->corners[0], *q = t->corners[1], *r = t->corners[2];
+    for (int a = 0; a < AXES; a++) {
+        p[a] = (points[a] - f->origin[a]) * f->scale[a];
+        q[a] = (points[a + 3] - f->origin[a]) * f->scale[a];
+        r[a] = (points[a + 6] - f->origin[a]) * f->scale[a];
+        t->from[a] = first_column(real_min(p[a], real_min(q[a], r[a])), f->columns[a]);
+        t->to[a] = first_column(real_max(p[a], real_max(q[a], r[a])), f->columns[a]);
+    }
+}
+
+/* A row of a triangle: if any edges cross it, then both of the corner that lies alone on its side. */
+static inline void fill_triangle_row(aset_baker *b, sheet *s, const triangle *t, int32_t row) {
+    aset_real middle = (aset_real)row + R(0.5);
+    const aset_real *p = t->corners[0], *q = t->corners[1], *r = t->corners[2], *alone = p;
+    bool p_below = p[s->v] <= middle, q_below = q[s->v] <= middle, up = p_below;
+    if (p_below == q_below) {
+        up = r[s->v] <= middle;
+        if (up == p_below) {
+            return;
+        }
+        alone = r;
+        r = p;
+    } else if ((r[s->v] <= middle) == p_below) {
+        alone = q;
+        q = p;
+        up = q_below;
+    }
+    aset_real x, y;
+    if (up) {
+        x = crossing(alone, q, s->u, s->v, middle);
+        y = crossing(alone, r, s->u, s->v, middle);
+    } else {
+        x = crossing(q, alone, s->u, s->v, middle);
+        y = crossing(r, alone, s->u, s->v, middle);
+    }
+    fill_span(b, s, real_min(x, y), real_max(x, y), row, t->from[s->u], t->to[s->u]);
+}
+
+static void sample_triangle(aset_baker *b, const triangle *t) {
+    const aset_real *p = t->corners[0], *q = t->corners[1], *r = t->corners[2];
+    aset_vec3 facing = vec_cross(vec(q[0] - p[0], q[1] - p[1], q[2] - p[2]), vec(r[0] - p[0], r[1] - p[1], r[2] - p[2]));
+    const aset_real normal[3] = {facing.x, facing.y, facing.z};
+    sheet s;
+    if (sheet_begin(&s, normal, p)) {
+        for (int32_t row = t->from[s.v]; row < t->to[s.v] && b->failure == ASET_OK; row++) {
+            fill_triangle_row(b, &s, t, row);
+        }
+        b->report.unseen -= s.seen && b->floor_block == 0;
+    }
 }
 
 /*
- * Whether a polygon whose columns reach from..to may be seen. Most of a fine model's triangles hold no column's middle: if their box
- * has none along two axes, no side sees one, and that is found before anything else is computed. is_flat: its plane does not leave
- * its box, so that none of its samples is in another layer.
+ * Is nothing of a triangle in this pass's blocks? Its plane does not leave its box, so that none of its samples is in another layer. A
+ * first pass looks at all, to count those that are unseen.
  */
-static inline bool may_be_seen(aset_baker *b, bool is_flat, const int32_t from[3], const int32_t to[3]) {
-    if (is_flat && b->floor_block > 0) { /* a further pass: the first has counted those that are unseen */
-        uint32_t in_layer = b->blocks[0] * b->blocks[1];
-        uint32_t low = (uint32_t)(from[2] > 0 ? from[2] - 1 : 0) / 16, high = (uint32_t)to[2] / 16;
-        if ((high + 1) * in_layer <= b->floor_block || low * in_layer >= b->ceiling_block) {
-            return false;
-        }
+static inline bool is_elsewhere(const aset_baker *b, const triangle *t) {
+    if (b->floor_block == 0) {
+        return false;
     }
-    b->report.unseen += b->floor_block == 0; /* until it is seen */
-    return (from[0] == to[0]) + (from[1] == to[1]) + (from[2] == to[2]) < 2;
+    uint32_t in_layer = b->blocks[0] * b->blocks[1], low = (uint32_t)(t->from[2] > 0 ? t->from[2] - 1 : 0) / 16;
+    uint32_t high = (uint32_t)t->to[2] / 16;
+    return (high + 1) * in_layer <= b->floor_block || low * in_layer >= b->ceiling_block;
 }
 
-/* A polygon in columns. */
-static void polygon_in_columns(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings) {
-    int32_t from[3], to[3];
-    for (int a = 0; a < 3; a++) {
-        aset_real low = points[a], high = low;
-        for (uint32_t i = 1; i < n; i++) {
-            low = real_min(low, points[3 * i + (uint32_t)a]);
-            high = real_max(high, points[3 * i + (uint32_t)a]);
-        }
-        from[a] = first_column(low, b->n[a]);
-        to[a] = first_column(high, b->n[a]);
-    }
-    if (may_be_seen(b, n == 3, from, to)) {
-        sample_sheet(b, points, n, crossings, normal_of(points, n), from, to);
-    }
-}
-
-void aset_sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
-    for (uint32_t i = 0; i < n; i++) {
-        aset_real column[3];
-        to_columns(b, points + 3 * i, column);
-        memcpy(points + 3 * i, column, sizeof column);
-    }
-    polygon_in_columns(b, points, n, crossings);
-}
-
-/* A triangle on one axis: in columns, and the columns whose middles its box holds. */
-static inline aset_vec3 triangle_on_axis(const aset_baker *b, const aset_real *points, int a, int32_t *from, int32_t *to) {
-    aset_real p = to_column(b, a, points[a]), q = to_column(b, a, points[a + 3]), r = to_column(b, a, points[a + 6]);
-    from[a] = first_column(real_min(p, real_min(q, r)), b->n[a]);
-    to[a] = first_column(real_max(p, real_max(q, r)), b->n[a]);
-    return vec(p, q, r);
-}
-
-/* Not polygon_in_columns: its loops, and looking up what was just written, take half as long again. */
-void aset_sheet_triangle(aset_baker *b, const aset_real *points) {
-    int32_t from[3], to[3];
-    aset_vec3 x = triangle_on_axis(b, points, 0, from, to), y = triangle_on_axis(b, points, 1, from, to);
-    aset_vec3 z = triangle_on_axis(b, points, 2, from, to);
-    if (may_be_seen(b, true, from, to)) {
-        const aset_real columns[9] = {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z};
-        aset_vec3 normal = vec_cross(vec(x.y - x.x, y.y - y.x, z.y - z.x), vec(x.z - x.x, y.z - y.x, z.z - z.x));
-        sample_sheet(b, columns, 3, NULL, normal, from, to);
+/*
+ * Most of a fine model's triangles hold no column's middle: if their box has none along two axes, no side sees one, and that is found
+ * before anything else is computed.
+ */
+static inline void take_triangle(aset_baker *b, const frame *f, const aset_real *points) {
+    triangle t;
+    place_triangle(&t, f, points);
+    if ((t.from[0] == t.to[0]) + (t.from[1] == t.to[1]) + (t.from[2] == t.to[2]) < 2 && !is_elsewhere(b, &t)) {
+        sample_triangle(b, &t);
     }
 }
 
 void aset_sheet_triangles(aset_baker *b, const aset_real *points, size_t n) {
-    for (; n > 0; n--, points += 9) {
-        aset_sheet_triangle(b, points);
+    const frame f = frame_of(b);
+    b->report.unseen += b->floor_block == 0 ? n : 0; /* until they are seen */
+    for (; n > 1; n--, points += 9) {
+        take_triangle(b, &f, points);
+    }
+    if (n > 0) {
+        aset_real last[10] = {0};
+        memcpy(last, points, 9 * sizeof *points);
+        take_triangle(b, &f, last);
+    }
+}
+
+void aset_sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
+    if (n == 3) {
+        aset_sheet_triangles(b, points, 1);
+    } else {
+        take_polygon(b, points, n, crossings);
     }
 }
 
 #if ASET_WITH_SPHERES || ASET_WITH_CONES
 static void sample_quad(aset_baker *b, aset_vec3 corners[4]) {
-    aset_real points[2][9];
-    for (int half = 0; half < 2; half++) {
-        for (int i = 0; i < 3; i++) {
-            aset_vec3 c = corners[i == 0 ? 0 : i + half];
-            aset_real point[3] = {c.x, c.y, c.z};
-            to_columns(b, point, points[half] + 3 * i);
-        }
-        polygon_in_columns(b, points[half], 3, NULL);
-    }
+    const aset_vec3 p = corners[0], q = corners[1], r = corners[2], s = corners[3];
+    const aset_real points[18] = {p.x, p.y, p.z, q.x, q.y, q.z, r.x, r.y, r.z, p.x, p.y, p.z, r.x, r.y, r.z, s.x, s.y, s.z};
+    aset_sheet_triangles(b, points, 2);
 }
 
 /* An object of n quads is unseen if all their triangles are. unseen: the count before it. */

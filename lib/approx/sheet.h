@@ -8,7 +8,6 @@
 
 /* points are the scene's and become columns; crossings: room for n. */
 void aset_sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings);
-void aset_sheet_triangle(aset_baker *b, const aset_real *points);
 void aset_sheet_triangles(aset_baker *b, const aset_real *points, size_t n);
 #if ASET_WITH_SPHERES
 void aset_sheet_sphere(aset_baker *b, aset_vec3 centre, aset_real radius);

@@ -11,6 +11,16 @@
 #define INLINE_BUT_FOR_SIZE static inline
 #endif
 
+/*
+ * Numbers of the axes side by side where a loop does the same for all: with a fourth one that is nothing, so that compilers use wide
+ * registers; without in programs that are compiled for size.
+ */
+#if defined(__OPTIMIZE_SIZE__)
+#define AXES 3
+#else
+#define AXES 4
+#endif
+
 static inline aset_vec3 vec(aset_real x, aset_real y, aset_real z) {
     aset_vec3 v = {x, y, z};
     return v;
