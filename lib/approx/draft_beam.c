@@ -11,26 +11,30 @@
 
 #define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
 
-static void set_axis(draft_beam *b, int a, int i, aset_real origin, aset_real direction) {
-    draft_axis x = draft_axis_of(b->draft, a, origin, direction);
-    b->o[a][i] = x.o;
-    b->d[a][i] = x.d;
-    b->turned[a][i] = x.turned ? R(1) : R(0);
-    b->from[a][i] = x.from;
-    b->inverse[a][i] = x.inverse;
+static void set_axis(draft_beam *restrict b, const aset_draft *draft, int a, const aset_real *restrict origins,
+                     const aset_real *restrict directions) {
+    aset_real *o = b->o[a], *d = b->d[a], *turned = b->turned[a], *from = b->from[a], *inverse = b->inverse[a];
+    aset_real low = draft->low[a], per_size = draft->per_size[a];
+    EACH(i) {
+        draft_axis x = draft_axis_of(low, per_size, origins[i], directions[i]);
+        o[i] = x.o;
+        d[i] = x.d;
+        turned[i] = x.d < 0 ? R(1) : R(0);
+        from[i] = x.from;
+        inverse[i] = x.inverse;
+    }
 }
 
-void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, const aset_vec3 *origins, const aset_vec3 *directions,
-                           const aset_real *t_max, uint32_t n) {
+void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, aset_real (*origins)[DRAFT_BEAM],
+                           aset_real (*directions)[DRAFT_BEAM], const aset_real *t_max, uint32_t n) {
     beam->draft = draft;
     beam->n_visited = 0;
     beam->n_left = n;
+    for (int a = 0; a < 3; a++) {
+        set_axis(beam, draft, a, origins[a], directions[a]);
+    }
     EACH(i) {
-        uint32_t k = (uint32_t)i < n ? (uint32_t)i : 0;
-        set_axis(beam, 0, i, origins[k].x, directions[k].x);
-        set_axis(beam, 1, i, origins[k].y, directions[k].y);
-        set_axis(beam, 2, i, origins[k].z, directions[k].z);
-        beam->t_max[i] = t_max[k];
+        beam->t_max[i] = t_max[i];
         beam->end[i] = 0;
         beam->left[i] = (uint32_t)i < n ? R(1) : R(0);
         beam->cover[i] = draft_cover_of(beam->layers[i]);

@@ -23,9 +23,9 @@ typedef struct draft_beam {
     uint64_t n_visited; /* voxels, of all rays */
 } draft_beam;
 
-/* Up to DRAFT_BEAM rays of unit direction, which meet facets at 0 < t < t_max. */
-void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, const aset_vec3 *origins, const aset_vec3 *directions,
-                           const aset_real *t_max, uint32_t n);
+/* The first n of DRAFT_BEAM rays of unit direction (the others only fill the arrays), which meet facets at 0 < t < t_max. */
+void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, aset_real (*origins)[DRAFT_BEAM],
+                           aset_real (*directions)[DRAFT_BEAM], const aset_real *t_max, uint32_t n);
 
 /*
  * Lays on the rays what they meet in voxel number k (by its bit) of a block that is not empty: number dense, the at[0]-th on x and so

@@ -340,7 +340,7 @@ static bool go(way *w) {
 }
 
 static inline void way_set_axis(way *w, int a, aset_real origin, aset_real direction) {
-    draft_axis x = draft_axis_of(w->draft, a, origin, direction);
+    draft_axis x = draft_axis_of(w->draft->low[a], w->draft->per_size[a], origin, direction);
     w->o[a] = x.o;
     w->d[a] = x.d;
     w->turned[a] = x.turned;

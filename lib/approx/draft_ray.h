@@ -50,10 +50,10 @@ typedef struct draft_axis {
     bool turned;
 } draft_axis;
 
-static inline draft_axis draft_axis_of(const aset_draft *draft, int a, aset_real origin, aset_real direction) {
+static inline draft_axis draft_axis_of(aset_real low, aset_real per_size, aset_real origin, aset_real direction) {
     draft_axis x;
-    x.o = (origin - draft->low[a]) * draft->per_size[a];
-    x.d = direction * draft->per_size[a];
+    x.o = (origin - low) * per_size;
+    x.d = direction * per_size;
     x.turned = x.d < 0;
     x.from = x.turned ? -x.o : x.o;
     x.rise = real_abs(x.d);

@@ -26,11 +26,25 @@
 /* Pixels that an outline's edges may err by: a picture's width has 16 bits, and a float 24. */
 #define PAD R(0.02)
 
-/* The eye rays of neighbouring pixels, and what they meet. */
+/* Lengths whose squares aset_vec_unit takes as they are. */
+#define SQUARE_LOW R(1e-20)
+#define SQUARE_HIGH R(1e20)
+
+/* The eye rays of neighbouring pixels, their numbers side by side, and what they meet. */
 typedef struct beam_rays {
-    aset_vec3 origins[DRAFT_BEAM], directions[DRAFT_BEAM];
+    aset_real origins[3][DRAFT_BEAM], directions[3][DRAFT_BEAM];
     eye_hits hits[DRAFT_BEAM];
 } beam_rays;
+
+static inline aset_vec3 lane_of(aset_real v[3][DRAFT_BEAM], uint32_t i) {
+    return vec(v[0][i], v[1][i], v[2][i]);
+}
+
+static inline void set_lane(aset_real v[3][DRAFT_BEAM], uint32_t i, aset_vec3 a) {
+    v[0][i] = a.x;
+    v[1][i] = a.y;
+    v[2][i] = a.z;
+}
 
 typedef struct order {
     uint8_t at[3][128]; /* blocks on each axis, in order */
@@ -268,14 +282,65 @@ static bool choose(aset_beams *beams, uint32_t column, uint32_t width) {
     return n > 0;
 }
 
+/* Directions from a perspective eye, of unit length: aset_camera_ray's arithmetic. False: some are too long or short for it. */
+static bool look_through(aset_real (*restrict directions)[DRAFT_BEAM], const camera *restrict eye, const aset_real *restrict x,
+                         const aset_real *restrict y) {
+    aset_real square[DRAFT_BEAM], scale[DRAFT_BEAM];
+    aset_vec3 forward = eye->forward, right = eye->right, down = eye->down;
+    int32_t beyond = 0;
+    for (int i = 0; i < DRAFT_BEAM; i++) {
+        aset_real a = forward.x + (right.x * x[i] + y[i] * down.x), b = forward.y + (right.y * x[i] + y[i] * down.y);
+        aset_real c = forward.z + (right.z * x[i] + y[i] * down.z), sum = a * a + b * b + c * c;
+        directions[0][i] = a;
+        directions[1][i] = b;
+        directions[2][i] = c;
+        square[i] = sum;
+        beyond += !((sum > SQUARE_LOW) & (sum < SQUARE_HIGH));
+    }
+    for (int i = 0; i < DRAFT_BEAM; i++) {
+        scale[i] = real_sqrt(square[i]);
+    }
+    for (int i = 0; i < DRAFT_BEAM; i++) {
+        aset_real per_length = 1 / scale[i];
+        directions[0][i] *= per_length;
+        directions[1][i] *= per_length;
+        directions[2][i] *= per_length;
+    }
+    return beyond == 0;
+}
+
+/* The rays of sample (i, j) of the beam's pixels; those beyond the n that there are repeat the first. */
+static void make_rays(beam_rays *rays, const drawing *d, uint32_t column, uint32_t row, uint32_t width, uint32_t n, uint32_t i,
+                      uint32_t j) {
+    aset_real x[DRAFT_BEAM], y[DRAFT_BEAM];
+    for (uint32_t k = 0; k < BEAM_RAYS; k++) {
+        uint32_t pixel = k < n ? k : 0;
+        x[k] = drawing_place(d, column + pixel % width, i, d->picture->width);
+        y[k] = drawing_place(d, row + pixel / width, j, d->picture->height);
+    }
+    bool known = !d->eye.orthographic && look_through(rays->directions, &d->eye, x, y);
+    for (uint32_t k = 0; k < BEAM_RAYS; k++) {
+        aset_vec3 origin = d->eye.from, direction;
+        if (!known) {
+            aset_camera_ray(&d->eye, x[k], y[k], &origin, &direction);
+            set_lane(rays->directions, k, direction);
+        }
+        set_lane(rays->origins, k, origin);
+    }
+}
+
 /* What n rays through the pixels chosen for meet: voxels, and objects that the draft keeps. */
 static void meet(const aset_beams *beams, beam_rays *rays, uint32_t n, const aset_tracer *tracer, aset_statistics *statistics) {
     draft_beam beam;
     query_hit kept[BEAM_RAYS];
     aset_real ends[BEAM_RAYS];
-    for (uint32_t i = 0; i < n; i++) {
-        ends[i] =
-            aset_draft_query_kept(&kept[i], tracer->draft, rays->origins[i], rays->directions[i], REAL_INFINITY, statistics);
+    bool keeps = tracer->draft->stage.counts.objects > 0;
+    for (uint32_t i = 0; i < BEAM_RAYS; i++) {
+        ends[i] = REAL_INFINITY;
+        if (keeps && i < n) {
+            ends[i] = aset_draft_query_kept(&kept[i], tracer->draft, lane_of(rays->origins, i), lane_of(rays->directions, i),
+                                            REAL_INFINITY, statistics);
+        }
     }
     aset_draft_beam_start(&beam, tracer->draft, rays->origins, rays->directions, ends, n);
     for (uint32_t i = 0; i < beams->n_chosen; i++) {
@@ -289,8 +354,8 @@ static void meet(const aset_beams *beams, beam_rays *rays, uint32_t n, const ase
     statistics->nonempty_visited += beam.n_visited;
     for (uint32_t i = 0; i < n; i++) {
         statistics->approx_hits += beam.cover[i].n > 0;
-        rays->hits[i].n = aset_draft_query_layers(rays->hits[i].layers, beam.layers[i], beam.cover[i].n, rays->origins[i],
-                                                  &kept[i], ends[i] < REAL_INFINITY);
+        rays->hits[i].n = aset_draft_query_layers(rays->hits[i].layers, beam.layers[i], beam.cover[i].n,
+                                                  lane_of(rays->origins, i), &kept[i], ends[i] < REAL_INFINITY);
     }
 }
 
@@ -302,8 +367,8 @@ static void draw_background(const drawing *d, uint32_t n, unsigned char *at) {
         aset_drawing_gather(&g, d->tracer->scene->background, 0);
     }
     aset_drawing_put(d, &g, at);
-    for (uint32_t i = 1; i < n; i++) {
-        memcpy(at + i * bytes, at, bytes);
+    for (uint32_t done = 1; done < n; done *= 2) {
+        memcpy(at + done * bytes, at, (n - done < done ? n - done : done) * bytes);
     }
     d->statistics->primary += (uint64_t)n * d->samples * d->samples;
 }
@@ -317,16 +382,12 @@ static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column
     memset(g, 0, sizeof g);
     for (uint32_t j = 0; j < d->samples; j++) {
         for (uint32_t i = 0; i < d->samples; i++) {
-            for (uint32_t y = 0, k = 0; y < rows; y++) {
-                for (uint32_t x = 0; x < width; x++, k++) {
-                    aset_drawing_ray(d, column + x, row + y, i, j, &rays.origins[k], &rays.directions[k]);
-                }
-            }
+            make_rays(&rays, d, column, row, width, n, i, j);
             meet(beams, &rays, n, d->tracer, d->statistics);
             for (uint32_t k = 0; k < n; k++) {
                 aset_real cover;
-                aset_colour c = aset_trace_tree(d->tracer, rays.origins[k], rays.directions[k], &rays.hits[k], d->scratch,
-                                                d->statistics, &cover);
+                aset_colour c = aset_trace_tree(d->tracer, lane_of(rays.origins, k), lane_of(rays.directions, k), &rays.hits[k],
+                                                d->scratch, d->statistics, &cover);
                 aset_drawing_gather(&g[k], c, cover);
             }
         }
@@ -350,14 +411,19 @@ static uint32_t draw_rows(aset_beams *beams, const drawing *d, uint32_t row, uin
     if (!begin_rows(beams, d, row, rows)) {
         return 0;
     }
-    for (uint32_t column = 0; column < d->columns; column += most) {
-        uint32_t width = d->columns - column < most ? d->columns - column : most;
-        if (choose(beams, column, most) || !alone) {
+    for (uint32_t column = 0, empty; column < d->columns;) {
+        for (empty = column; empty < d->columns && !choose(beams, empty, most) && alone;) {
+            empty += most;
+        }
+        empty = empty < d->columns ? empty : d->columns;
+        for (uint32_t i = 0; i < rows && empty > column; i++) {
+            draw_background(d, empty - column, line + i * stride + column * bytes);
+        }
+        column = empty;
+        if (column < d->columns) {
+            uint32_t width = d->columns - column < most ? d->columns - column : most;
             draw_beam(beams, d, column, row, width, rows, line + column * bytes, stride);
-        } else {
-            for (uint32_t i = 0; i < rows; i++) {
-                draw_background(d, width, line + i * stride + column * bytes);
-            }
+            column += width;
         }
     }
     return rows;

@@ -2,6 +2,7 @@
 #ifndef ASET_TRACE_DRAWING_H
 #define ASET_TRACE_DRAWING_H
 
+#include "base/real.h"
 #include "trace/camera.h"
 #include "trace/trace_tree.h"
 
@@ -21,6 +22,12 @@ typedef struct gathered {
     aset_colour sum;
     aset_real cover;
 } gathered;
+
+/* Where a sample of a pixel lies on an axis of the picture that has so many pixels: -1 to 1. */
+static inline aset_real drawing_place(const drawing *d, uint32_t pixel, uint32_t sample, uint32_t size) {
+    aset_real at = (aset_real)pixel - d->corner + ((aset_real)sample + R(0.5)) / (aset_real)d->samples;
+    return 2 * at / (aset_real)size - 1;
+}
 
 /* The eye ray of sample (i, j) of a pixel. */
 void aset_drawing_ray(const drawing *d, uint32_t column, uint32_t row, uint32_t i, uint32_t j, aset_vec3 *origin,

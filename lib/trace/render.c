@@ -53,10 +53,7 @@ static void put_pixel(unsigned char *at, const aset_picture *picture, aset_colou
 
 void aset_drawing_ray(const drawing *d, uint32_t column, uint32_t row, uint32_t i, uint32_t j, aset_vec3 *origin,
                       aset_vec3 *direction) {
-    aset_real n = (aset_real)d->samples;
-    aset_real x = (aset_real)column - d->corner + ((aset_real)i + R(0.5)) / n;
-    aset_real y = (aset_real)row - d->corner + ((aset_real)j + R(0.5)) / n;
-    aset_camera_ray(&d->eye, 2 * x / (aset_real)d->picture->width - 1, 2 * y / (aset_real)d->picture->height - 1, origin,
+    aset_camera_ray(&d->eye, drawing_place(d, column, i, d->picture->width), drawing_place(d, row, j, d->picture->height), origin,
                     direction);
 }
 
