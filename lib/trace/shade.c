@@ -37,6 +37,7 @@ void aset_shading_make(shading *s, const aset_tracer *tracer, const query_hit *h
     s->normal = s->entering ? s->hit.normal : vec_scale(s->hit.normal, -1);
     s->nudge = (vec_largest(s->hit.point) + hit->t_near) * NUDGE;
     s->clearance = aset_query_clearance(tracer);
+    s->known = s->dark = 0;
 }
 
 aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction, aset_real clearance) {
@@ -69,14 +70,20 @@ static aset_real last_before(const aset_tracer *tracer, const shading *s, uint32
     return REAL_INFINITY;
 }
 
-static bool in_shadow(const aset_tracer *tracer, const shading *s, uint32_t light, const light_ray *towards, uint32_t depth,
+static bool in_shadow(const aset_tracer *tracer, shading *s, uint32_t light, const light_ray *towards, uint32_t depth,
                       aset_statistics *statistics) {
+    uint32_t bit = light < 32 ? UINT32_C(1) << light : 0;
+    if ((s->known & bit) != 0) {
+        return (s->dark & bit) != 0;
+    }
     bool approximate = aset_policy_approximate(tracer, ASET_SHADOW, depth);
     aset_vec3 start = aset_shade_start(s, towards->direction, approximate ? SHADOW_SHARE * s->clearance : 0);
     bool hit = aset_query_any(tracer, start, towards->direction, towards->distance, approximate,
                               last_before(tracer, s, light, towards), statistics);
     statistics->shadow++;
     statistics->shadow_hit += hit;
+    s->known |= bit;
+    s->dark |= hit ? bit : 0;
     return hit;
 }
 
@@ -94,7 +101,7 @@ static aset_real highlight(const shading *s, aset_vec3 normal, aset_vec3 to_ligh
     return r_dot_v > 0 ? aset_real_power(r_dot_v, s->hit.material->shine) : 0;
 }
 
-aset_colour aset_shade_local(const aset_tracer *tracer, const shading *s, uint32_t depth, aset_statistics *statistics) {
+aset_colour aset_shade_local(const aset_tracer *tracer, shading *s, uint32_t depth, aset_statistics *statistics) {
     const aset_scene *scene = tracer->scene;
     const aset_material *m = s->hit.material;
     aset_vec3 normal = lit_normal(tracer, s);

@@ -88,6 +88,13 @@ static void add_colour(aset_colour *sum, aset_real weight, const aset_colour *co
     sum->b += weight * colour->b;
 }
 
+/* A facet so many clearances behind another one, two columns, mostly is the same surface's: it is taken to lie in the same shadows. */
+#define SAME_SURFACE 7
+
+static bool is_same_surface(const query_hit *before, const query_hit *hit, aset_real clearance) {
+    return before->object == ASET_NO_OBJECT && hit->object == ASET_NO_OBJECT && hit->t - before->t < SAME_SURFACE * clearance;
+}
+
 /*
  * The layers of a draft that a ray meets, shaded; the rays sent on leave from the layer that covers most, so that there are no
  * more of them than of a single hit. What of the ray is left uncovered.
@@ -97,11 +104,17 @@ static aset_real shade_layers(aset_colour *sum, const aset_tracer *tracer, aset_
                               uint32_t *n, aset_statistics *statistics) {
     aset_real left = 1, most = 0;
     shading pair[2]; /* the one that covers most so far, and the next */
-    uint32_t sender = 1;
+    uint32_t sender = 1, known = 0, dark = 0; /* of the layer before */
     for (uint32_t i = 0; i < n_layers; i++) {
         shading *s = pair + (1 - sender);
         aset_shading_make(s, tracer, layers + i, direction);
+        if (i > 0 && is_same_surface(layers + i - 1, layers + i, s->clearance)) {
+            s->known = known;
+            s->dark = dark;
+        }
         aset_colour local = aset_shade_local(tracer, s, depth, statistics);
+        known = s->known;
+        dark = s->dark;
         add_colour(sum, weight * layers[i].cover, &local);
         left -= layers[i].cover;
         if (layers[i].cover > most) {
