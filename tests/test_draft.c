@@ -1216,6 +1216,38 @@ static void test_draft__statistics(void **state) {
     model_free(&m);
 }
 
+#if ASET_WITH_POLYGONS
+/* The shadow rays of a picture of a slope, seen and lit from above, and of another square as far above it as given, 0 for none. */
+static aset_statistics shadows_of_slope(double other) {
+    static unsigned char pixels[SIDE * SIDE * 4];
+    model m;
+    drawn d;
+    aset_statistics s = {0};
+    model_start(&m);
+    model_rectangle(&m, dvec_real(dvec_make(-4, -4, -2)), dvec_real(dvec_make(8, 0, 1)), dvec_real(dvec_make(0, 8, 3)));
+    if (other > 0) {
+        model_rectangle(&m, dvec_real(dvec_make(-1, -1, other)), dvec_real(dvec_make(2.2, 0, 0.3)), dvec_real(dvec_make(0.2, 2, 0)));
+    }
+    model_light(&m, dvec_real(dvec_make(1, 2, 40)));
+    bake(&d, &m, 12, 12, 12, true);
+    aset_tracer tracer = tracer_of(&d.draft);
+    aset_view view = view_from(dvec_real(dvec_make(0.5, -1, 14)));
+    assert_int_equal(draw(pixels, SIDE, &tracer, &view, &s), ASET_OK);
+    assert_true(s.primary_hit > SIDE * SIDE / 4);
+    drawn_close(&d);
+    model_free(&m);
+    return s;
+}
+
+/* Where facets of one surface share a ray, one shadow ray does for them; where a ray meets an edge and what lies far behind it, two. */
+static void test_draft__layers_of_one_surface_share_a_shadow_ray(void **state) {
+    (void)state;
+    aset_statistics one = shadows_of_slope(0), two = shadows_of_slope(4);
+    assert_int_equal(one.shadow, one.primary_hit);
+    assert_true(two.shadow > two.primary_hit);
+}
+#endif
+
 /* All objects kept: no facets, and still a draft, the same as the scene. */
 static void test_draft__all_kept(void **state) {
     (void)state;
@@ -1282,6 +1314,9 @@ int main(void) {
         cmocka_unit_test(test_draft__beams_are_of_one_picture),
         cmocka_unit_test(test_draft__beams_and_reach_refuse),
         cmocka_unit_test(test_draft__statistics),
+#if ASET_WITH_POLYGONS
+        cmocka_unit_test(test_draft__layers_of_one_surface_share_a_shadow_ray),
+#endif
         cmocka_unit_test(test_draft__all_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -23,7 +23,11 @@ typedef struct sheet {
 } sheet;
 
 /* The bin of a voxel's side, NULL if it is not of this pass's blocks; kept as the side's last one, which the next sample mostly wants. */
-static bin *find_bin(aset_baker *b, const sheet *s, uint32_t key, const uint32_t at[3]) {
+static bin *find_bin(aset_baker *b, const sheet *s, uint32_t key, uint32_t u, uint32_t v, uint32_t a) {
+    uint32_t at[3];
+    at[s->u] = u;
+    at[s->v] = v;
+    at[s->a] = a;
     uint32_t block = baker_block_at(b, at[0], at[1], at[2]);
     bin *it = block >= b->floor_block && block < b->ceiling_block ? aset_bins_find(b, key) : NULL;
     b->recent_keys[s->side] = key; /* finding may have moved all bins, which empties these */
@@ -38,12 +42,9 @@ static void add_sample(aset_baker *b, const sheet *s, int32_t i, int32_t j) {
     height = height > 0 ? (height < top ? height : top) : 0;
     uint32_t k = (uint32_t)(int32_t)height / 4;
     k -= k == b->n[s->a];
-    uint32_t at[3];
-    at[s->u] = (uint32_t)i / 4;
-    at[s->v] = (uint32_t)j / 4;
-    at[s->a] = k;
-    uint32_t key = ((at[2] * b->n[1] + at[1]) * b->n[0] + at[0]) * 6 + s->side;
-    bin *it = key == b->recent_keys[s->side] ? b->recent[s->side] : find_bin(b, s, key, at);
+    const uint32_t strides[3] = {6, 6 * b->n[0], 6 * b->n[0] * b->n[1]};
+    uint32_t key = (uint32_t)i / 4 * strides[s->u] + (uint32_t)j / 4 * strides[s->v] + s->side + k * strides[s->a];
+    bin *it = key == b->recent_keys[s->side] ? b->recent[s->side] : find_bin(b, s, key, (uint32_t)i / 4, (uint32_t)j / 4, k);
     if (it == NULL) {
         return;
     }

@@ -260,26 +260,32 @@ static bool begin_rows(aset_beams *beams, const drawing *d, uint32_t row, uint32
     return !beams->overflow;
 }
 
-/* Chooses the voxels before the pixels from column on, a multiple of width. False: there are none. */
+/* Of n voxels those that reach into columns from..to; what ends before them leaves the list that it comes from. How many. */
+static uint32_t choose_from(uint16_t *restrict chosen, uint16_t *restrict list, uint32_t *n, const aset_beam_voxel *voxels,
+                            uint32_t from, uint32_t to) {
+    uint32_t n_chosen = 0, n_left = 0;
+    for (uint32_t i = 0; i < *n; i++) {
+        uint16_t index = list[i];
+        uint32_t left = voxels[index].left, reaches = voxels[index].right >= from;
+        list[n_left] = chosen[n_chosen] = index;
+        n_left += reaches;
+        n_chosen += (left <= to) & reaches;
+    }
+    *n = n_left;
+    return n_chosen;
+}
+
+/* Chooses the voxels before the pixels from column on, a multiple of width; columns come in ascending order. False: there are none. */
 static bool choose(aset_beams *beams, uint32_t column, uint32_t width) {
     if (beams->segment != column / SEGMENT) {
-        uint32_t from = column / SEGMENT * SEGMENT, to = from + SEGMENT - 1, n = 0;
-        for (uint32_t i = 0; i < beams->n_in_row; i++) {
-            const aset_beam_voxel *v = beams->voxels + beams->in_row[i];
-            beams->in_segment[n] = beams->in_row[i];
-            n += (v->left <= to) & (v->right >= from);
-        }
-        beams->n_in_segment = n;
+        uint32_t from = column / SEGMENT * SEGMENT;
+        beams->n_in_segment =
+            choose_from(beams->in_segment, beams->in_row, &beams->n_in_row, beams->voxels, from, from + SEGMENT - 1);
         beams->segment = column / SEGMENT;
     }
-    uint32_t last = column + width - 1, n = 0;
-    for (uint32_t i = 0; i < beams->n_in_segment; i++) {
-        const aset_beam_voxel *v = beams->voxels + beams->in_segment[i];
-        beams->chosen[n] = beams->in_segment[i];
-        n += (v->left <= last) & (v->right >= column);
-    }
-    beams->n_chosen = n;
-    return n > 0;
+    beams->n_chosen =
+        choose_from(beams->chosen, beams->in_segment, &beams->n_in_segment, beams->voxels, column, column + width - 1);
+    return beams->n_chosen > 0;
 }
 
 /* Directions from a perspective eye, of unit length: aset_camera_ray's arithmetic. False: some are too long or short for it. */
