@@ -191,7 +191,7 @@ static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, a
 }
 
 /* Not for triangles: these take aset_sheet_triangles. */
-static void take_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
+static void look_at_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
     int32_t from[3], to[3];
     for (int a = 0; a < 3; a++) {
         aset_real low = REAL_INFINITY, high = -REAL_INFINITY;
@@ -225,7 +225,7 @@ typedef struct triangle {
 static frame frame_of(const aset_baker *b) {
     frame f;
     for (int a = 0; a < AXES; a++) {
-        int axis = a < 3 ? a : 0;
+        int axis = a % 3;
         f.origin[a] = b->origin[axis];
         f.scale[a] = b->scale[axis];
         f.columns[a] = columns_on(b, axis);
@@ -234,15 +234,17 @@ static frame frame_of(const aset_baker *b) {
 }
 
 /* Reads ten numbers. */
-static inline void place_triangle(triangle *restrict t, const frame *restrict f, const aset_real *restrict points) {
-    aset_real *p = t->corners[0], *q = t->corners[1], *r = t->corners[2];
+static inline triangle place_triangle(const frame *restrict f, const aset_real *restrict points) {
+    triangle t;
+    aset_real *p = t.corners[0], *q = t.corners[1], *r = t.corners[2];
     for (int a = 0; a < AXES; a++) {
         p[a] = (points[a] - f->origin[a]) * f->scale[a];
         q[a] = (points[a + 3] - f->origin[a]) * f->scale[a];
         r[a] = (points[a + 6] - f->origin[a]) * f->scale[a];
-        t->from[a] = first_column(real_min(p[a], real_min(q[a], r[a])), f->columns[a]);
-        t->to[a] = first_column(real_max(p[a], real_max(q[a], r[a])), f->columns[a]);
+        t.from[a] = first_column(real_min(p[a], real_min(q[a], r[a])), f->columns[a]);
+        t.to[a] = first_column(real_max(p[a], real_max(q[a], r[a])), f->columns[a]);
     }
+    return t;
 }
 
 /* A row of a triangle: if any edges cross it, then both of the corner that lies alone on its side. */
@@ -303,9 +305,8 @@ static inline bool is_elsewhere(const aset_baker *b, const triangle *t) {
  * Most of a fine model's triangles hold no column's middle: if their box has none along two axes, no side sees one, and that is found
  * before anything else is computed.
  */
-static inline void take_triangle(aset_baker *b, const frame *f, const aset_real *points) {
-    triangle t;
-    place_triangle(&t, f, points);
+static inline void look_at_triangle(aset_baker *b, const frame *f, const aset_real *points) {
+    triangle t = place_triangle(f, points);
     if ((t.from[0] == t.to[0]) + (t.from[1] == t.to[1]) + (t.from[2] == t.to[2]) < 2 && !is_elsewhere(b, &t)) {
         sample_triangle(b, &t);
     }
@@ -315,12 +316,12 @@ void aset_sheet_triangles(aset_baker *b, const aset_real *points, size_t n) {
     const frame f = frame_of(b);
     b->report.unseen += b->floor_block == 0 ? n : 0; /* until they are seen */
     for (; n > 1; n--, points += 9) {
-        take_triangle(b, &f, points);
+        look_at_triangle(b, &f, points);
     }
     if (n > 0) {
         aset_real last[10] = {0};
         memcpy(last, points, 9 * sizeof *points);
-        take_triangle(b, &f, last);
+        look_at_triangle(b, &f, last);
     }
 }
 
@@ -328,7 +329,7 @@ void aset_sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real 
     if (n == 3) {
         aset_sheet_triangles(b, points, 1);
     } else {
-        take_polygon(b, points, n, crossings);
+        look_at_polygon(b, points, n, crossings);
     }
 }
 

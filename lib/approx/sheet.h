@@ -6,7 +6,7 @@
 
 #if ASET_WITH_DRAFTS
 
-/* points are the scene's and become columns; crossings: room for n. */
+/* points are the scene's, and are written over; crossings: room for n. */
 void aset_sheet_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings);
 void aset_sheet_triangles(aset_baker *b, const aset_real *points, size_t n);
 #if ASET_WITH_SPHERES
