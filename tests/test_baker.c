@@ -390,13 +390,17 @@ static void test_baker__triangles_are_checked(void **state) {
     assert_int_equal(aset_baker_triangles(NULL, whole, 1), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_baker_triangles(baker, NULL, 1), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_baker_triangles(baker, NULL, 0), ASET_OK);
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < 36; i++) { /* the first, some in the middle, the last, which is looked at alone */
         for (size_t k = 0; k < COUNT_OF(bad); k++) {
-            aset_real t[9];
-            memcpy(t, whole, sizeof t);
+            aset_real t[36];
+            for (int j = 0; j < 4; j++) {
+                memcpy(t + 9 * j, whole, sizeof whole);
+            }
             t[i] = bad[k];
-            aset_status status = aset_baker_triangles(baker, t, 1);
+            aset_status status = aset_baker_triangles(baker, t + i / 9 * 9, 1);
             check(status == ASET_ERR_GEOMETRY, "coordinate %d, bad %zu: %d", i, k, (int)status);
+            status = aset_baker_triangles(baker, t, 4);
+            check(status == ASET_ERR_GEOMETRY, "coordinate %d of four, bad %zu: %d", i, k, (int)status);
         }
     }
     assert_int_equal(aset_baker_triangles(baker, whole, 1), ASET_OK);

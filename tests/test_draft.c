@@ -1218,7 +1218,7 @@ static void test_draft__statistics(void **state) {
 
 #if ASET_WITH_POLYGONS
 /* The shadow rays of a picture of a slope, seen and lit from above, and of another square as far above it as given, 0 for none. */
-static aset_statistics shadows_of_slope(double other) {
+static aset_statistics shadows_of_slope(double other, uint32_t n_lights) {
     static unsigned char pixels[SIDE * SIDE * 4];
     model m;
     drawn d;
@@ -1228,7 +1228,9 @@ static aset_statistics shadows_of_slope(double other) {
     if (other > 0) {
         model_rectangle(&m, dvec_real(dvec_make(-1, -1, other)), dvec_real(dvec_make(2.2, 0, 0.3)), dvec_real(dvec_make(0.2, 2, 0)));
     }
-    model_light(&m, dvec_real(dvec_make(1, 2, 40)));
+    for (uint32_t i = 0; i < n_lights; i++) {
+        model_light(&m, dvec_real(dvec_make(1, 2, 40)));
+    }
     bake(&d, &m, 12, 12, 12, true);
     aset_tracer tracer = tracer_of(&d.draft);
     aset_view view = view_from(dvec_real(dvec_make(0.5, -1, 14)));
@@ -1239,12 +1241,17 @@ static aset_statistics shadows_of_slope(double other) {
     return s;
 }
 
-/* Where facets of one surface share a ray, one shadow ray does for them; where a ray meets an edge and what lies far behind it, two. */
+/*
+ * Where facets of one surface share a ray, one shadow ray to each of the first 32 lights does for them; where a ray meets an edge and
+ * what lies far behind it, two.
+ */
 static void test_draft__layers_of_one_surface_share_a_shadow_ray(void **state) {
     (void)state;
-    aset_statistics one = shadows_of_slope(0), two = shadows_of_slope(4);
+    aset_statistics one = shadows_of_slope(0, 1), two = shadows_of_slope(4, 1), many = shadows_of_slope(0, 32);
     assert_int_equal(one.shadow, one.primary_hit);
     assert_true(two.shadow > two.primary_hit);
+    assert_int_equal(many.shadow, 32 * one.shadow);
+    assert_true(shadows_of_slope(0, 33).shadow > 33 * one.shadow);
 }
 #endif
 

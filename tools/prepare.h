@@ -16,6 +16,7 @@ typedef enum settings_cells { CELLS_FLAT, CELLS_NORMAL, CELLS_PLANE } settings_c
 /* The options of `aset render`; settings_default gives the defaults. */
 typedef struct settings {
     const aset_method *method;
+    bool has_approx, has_approx_depth, has_curtail; /* said, not by default */
     uint32_t approx_kinds, approx_depth;
     settings_cells cells;
     uint32_t grid[3], tree_depth, leaf; /* 0: automatic */
@@ -43,8 +44,16 @@ typedef struct settings {
 
 settings settings_default(void);
 
-/* Options that several commands have, for their tables of long ones: of models, of a scene's camera. */
-enum { SETTINGS_FROM = 1024, SETTINGS_AT, SETTINGS_UP, SETTINGS_ANGLE, SETTINGS_UP_AXIS, SETTINGS_GROUND, SETTINGS_SMOOTH };
+/* Options that several commands have, for their tables of long ones: of how it is drawn, of models, of a scene's camera. */
+enum {
+    SETTINGS_FROM = 1024, SETTINGS_AT, SETTINGS_UP, SETTINGS_ANGLE, SETTINGS_UP_AXIS, SETTINGS_GROUND, SETTINGS_SMOOTH,
+    SETTINGS_APPROX, SETTINGS_APPROX_DEPTH, SETTINGS_LEAF, SETTINGS_CURTAIL, SETTINGS_CURTAIL_WHEN, SETTINGS_SAMPLES, SETTINGS_DEPTH
+};
+#define SETTINGS_DRAWING_OPTIONS                                                                                       \
+    {"approx", required_argument, NULL, SETTINGS_APPROX}, {"approx-depth", required_argument, NULL, SETTINGS_APPROX_DEPTH}, \
+        {"leaf", required_argument, NULL, SETTINGS_LEAF}, {"curtail", required_argument, NULL, SETTINGS_CURTAIL},      \
+        {"curtail-when", required_argument, NULL, SETTINGS_CURTAIL_WHEN},                                              \
+        {"samples", required_argument, NULL, SETTINGS_SAMPLES}, {"depth", required_argument, NULL, SETTINGS_DEPTH}
 #define SETTINGS_MODEL_OPTIONS                                                                                         \
     {"up-axis", required_argument, NULL, SETTINGS_UP_AXIS}, {"ground", required_argument, NULL, SETTINGS_GROUND}
 #define SETTINGS_SMOOTH_OPTION {"smooth", no_argument, NULL, SETTINGS_SMOOTH}

@@ -51,17 +51,10 @@ static const char help[] =
     "  -h, --help              this text\n";
 
 enum {
-    OPTION_APPROX = 256,
-    OPTION_APPROX_DEPTH,
-    OPTION_GRID,
+    OPTION_GRID = 256,
     OPTION_OCTREE_DEPTH,
-    OPTION_LEAF,
     OPTION_CELLS,
-    OPTION_CURTAIL,
-    OPTION_CURTAIL_WHEN,
     OPTION_MEMORY,
-    OPTION_SAMPLES,
-    OPTION_DEPTH,
     OPTION_RULES,
     OPTION_ROWS,
     OPTION_TRANSPARENT,
@@ -73,18 +66,12 @@ enum {
 static const struct option longs[] = {
     {"output", required_argument, NULL, 'o'},
     {"method", required_argument, NULL, 'm'},
-    {"approx", required_argument, NULL, OPTION_APPROX},
-    {"approx-depth", required_argument, NULL, OPTION_APPROX_DEPTH},
     {"grid", required_argument, NULL, OPTION_GRID},
     {"octree-depth", required_argument, NULL, OPTION_OCTREE_DEPTH},
-    {"leaf", required_argument, NULL, OPTION_LEAF},
     {"cells", required_argument, NULL, OPTION_CELLS},
-    {"curtail", required_argument, NULL, OPTION_CURTAIL},
-    {"curtail-when", required_argument, NULL, OPTION_CURTAIL_WHEN},
+    SETTINGS_DRAWING_OPTIONS,
     {"memory", required_argument, NULL, OPTION_MEMORY},
     {"size", required_argument, NULL, 's'},
-    {"samples", required_argument, NULL, OPTION_SAMPLES},
-    {"depth", required_argument, NULL, OPTION_DEPTH},
     {"rules", required_argument, NULL, OPTION_RULES},
     {"rows", required_argument, NULL, OPTION_ROWS},
     {"threads", required_argument, NULL, 'j'},
@@ -104,7 +91,7 @@ static const struct option longs[] = {
 typedef struct request {
     settings settings;
     const char *scene, *output, *stats;
-    bool report, quiet, is_png, has_rows, has_approx, has_cells, has_approx_depth, wants_help, is_aset;
+    bool report, quiet, is_png, has_rows, has_cells, wants_help, is_aset;
     uint32_t first_row, end_row;
 } request;
 
@@ -120,39 +107,9 @@ static bool parse_method(request *r, const char *text) {
     return true;
 }
 
-static bool parse_approx(request *r, const char *text) {
-    static const tool_word kinds[] = {{"primary", ASET_PRIMARY},     {"shadow", ASET_SHADOW}, {"reflected", ASET_REFLECTED},
-                                      {"refracted", ASET_REFRACTED}, {"all", ASET_ALL_KINDS}, {"none", 0},
-                                      {NULL, 0}};
-    unsigned mask;
-    if (!tool_parse_words("--approx", text, kinds, &mask)) {
-        return false;
-    }
-    r->settings.approx_kinds = mask;
-    r->has_approx = true;
-    return true;
-}
-
-static bool parse_samples(settings *s, const char *text) {
-    uint32_t n, side = 1;
-    if (!tool_parse_count("--samples", text, 1, 4096, &n)) {
-        return false;
-    }
-    while (side * side < n) {
-        side++;
-    }
-    if (side * side != n) {
-        tool_error(NULL, 0, "--samples: %" PRIu32 " is no square, expected 1, 4, 9, 16 ...", n);
-        return false;
-    }
-    s->samples = side;
-    return true;
-}
-
 static bool parse_more(request *r, int option) {
     static const tool_word cells[] = {{"flat", CELLS_FLAT}, {"normal", CELLS_NORMAL}, {"plane", CELLS_PLANE}, {NULL, 0}},
-                           rules[] = {{"spd", 1}, {"off", 0}, {NULL, 0}},
-                           sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}};
+                           rules[] = {{"spd", 1}, {"off", 0}, {NULL, 0}};
     settings *s = &r->settings;
     unsigned word = 0;
     switch (option) {
@@ -162,13 +119,6 @@ static bool parse_more(request *r, int option) {
         }
         s->cells = (settings_cells)word;
         r->has_cells = true;
-        return true;
-    case OPTION_CURTAIL: return tool_parse_real("--curtail", optarg, 0, 1e6, &s->curtail);
-    case OPTION_CURTAIL_WHEN:
-        if (!tool_parse_word("--curtail-when", optarg, sides, &word)) {
-            return false;
-        }
-        s->curtail_more = word != 0;
         return true;
     case OPTION_RULES:
         if (!tool_parse_word("--rules", optarg, rules, &word)) {
@@ -190,18 +140,11 @@ static bool parse_option(request *r, int option) {
     switch (option) {
     case 'o': r->output = optarg; return true;
     case 'm': return parse_method(r, optarg);
-    case OPTION_APPROX: return parse_approx(r, optarg);
-    case OPTION_APPROX_DEPTH:
-        r->has_approx_depth = true;
-        return tool_parse_count("--approx-depth", optarg, 0, ASET_DEPTH_MAX, &s->approx_depth);
     case OPTION_GRID: return tool_parse_grid("--grid", optarg, ASET_DIVISIONS_MAX, s->grid);
     case OPTION_OCTREE_DEPTH:
         return tool_parse_count("--octree-depth", optarg, 1, ASET_DEPTH_TREE_MAX, &s->tree_depth);
-    case OPTION_LEAF: return tool_parse_count("--leaf", optarg, 1, UINT32_MAX, &s->leaf);
     case OPTION_MEMORY: return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &s->memory);
     case 's': return tool_parse_size("--size", optarg, TOOL_DRAWN_MAX, &s->width, &s->height);
-    case OPTION_SAMPLES: return parse_samples(s, optarg);
-    case OPTION_DEPTH: return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &s->depth);
     case 'j': return tool_parse_count("--threads", optarg, 1, THREADS_MAX, &s->threads);
     case 'q': r->quiet = true; return true;
     case 'h': r->wants_help = true; return true;
@@ -257,7 +200,7 @@ static bool set_baked(request *r) {
                    s->grid[0] > 0 ? "--grid" : s->smooth ? "--smooth" : s->has_ground ? "--ground" : "--up-axis", r->scene);
         return false;
     }
-    if ((r->has_approx && s->approx_kinds != ASET_ALL_KINDS) || (r->has_approx_depth && s->approx_depth != 0)) {
+    if ((s->has_approx && s->approx_kinds != ASET_ALL_KINDS) || (s->has_approx_depth && s->approx_depth != 0)) {
         tool_error(NULL, 0, "--approx: %s is a draft, expected --approx all --approx-depth 0, or neither", r->scene);
         return false;
     }
@@ -289,7 +232,7 @@ static bool parse_request(request *r, int argc, char **argv) {
         return false;
     }
     r->scene = argv[optind];
-    if (r->is_aset && !r->has_approx) {
+    if (r->is_aset && !r->settings.has_approx) {
         r->settings.approx_kinds = ASET_ALL_KINDS;
     }
     return (!tool_is_draft(r->scene) || set_baked(r)) && check_request(r);

@@ -1,9 +1,10 @@
 /*
- * settings.c - the words that all commands which draw, plan, measure or bake take alike: where a scene is seen from, and what a
- * model gets beside itself.
+ * settings.c - the words that all commands which draw, plan, measure or bake take alike: where a scene is seen from, what a model
+ * gets beside itself, and how rays are followed.
  */
 #include "prepare.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 settings settings_default(void) {
@@ -18,6 +19,53 @@ settings settings_default(void) {
     s.depth = ASET_DEPTH_DEFAULT;
     s.threads = 1;
     return s;
+}
+
+static bool parse_samples(settings *s, const char *text) {
+    uint32_t n, side = 1;
+    if (!tool_parse_count("--samples", text, 1, 4096, &n)) {
+        return false;
+    }
+    while (side * side < n) {
+        side++;
+    }
+    if (side * side != n) {
+        tool_error(NULL, 0, "--samples: %" PRIu32 " is no square, expected 1, 4, 9, 16 ...", n);
+        return false;
+    }
+    s->samples = side;
+    return true;
+}
+
+static bool drawing_option(settings *s, int option) {
+    static const tool_word kinds[] = {{"primary", ASET_PRIMARY},     {"shadow", ASET_SHADOW}, {"reflected", ASET_REFLECTED},
+                                      {"refracted", ASET_REFRACTED}, {"all", ASET_ALL_KINDS}, {"none", 0},
+                                      {NULL, 0}},
+                           sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}};
+    unsigned word = 0;
+    switch (option) {
+    case SETTINGS_APPROX:
+        if (!tool_parse_words("--approx", optarg, kinds, &word)) {
+            return false;
+        }
+        s->approx_kinds = word;
+        s->has_approx = true;
+        return true;
+    case SETTINGS_APPROX_DEPTH:
+        s->has_approx_depth = true;
+        return tool_parse_count("--approx-depth", optarg, 0, ASET_DEPTH_MAX, &s->approx_depth);
+    case SETTINGS_LEAF: return tool_parse_count("--leaf", optarg, 1, UINT32_MAX, &s->leaf);
+    case SETTINGS_CURTAIL: s->has_curtail = true; return tool_parse_real("--curtail", optarg, 0, 1e6, &s->curtail);
+    case SETTINGS_CURTAIL_WHEN:
+        if (!tool_parse_word("--curtail-when", optarg, sides, &word)) {
+            return false;
+        }
+        s->curtail_more = word != 0;
+        return true;
+    case SETTINGS_SAMPLES: return parse_samples(s, optarg);
+    case SETTINGS_DEPTH: return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &s->depth);
+    default: return false;
+    }
 }
 
 bool settings_option(settings *s, int option) {
@@ -37,7 +85,7 @@ bool settings_option(settings *s, int option) {
         return true;
     case SETTINGS_GROUND: s->has_ground = true; return tool_parse_switch("--ground", optarg, &s->ground);
     case SETTINGS_SMOOTH: s->smooth = true; return true;
-    default: return false;
+    default: return drawing_option(s, option);
     }
 }
 

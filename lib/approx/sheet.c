@@ -247,18 +247,18 @@ static inline triangle place_triangle(const frame *restrict f, const aset_real *
     return t;
 }
 
-/* A row of a triangle: if any edges cross it, then both of the corner that lies alone on its side. */
+/*
+ * A row of a triangle, whose middle lies between its lowest and its highest corner: so the edges that cross it are both of the corner
+ * that lies alone on its side.
+ */
 static inline void fill_triangle_row(aset_baker *b, sheet *s, const triangle *t, int32_t row) {
     aset_real middle = (aset_real)row + R(0.5);
     const aset_real *p = t->corners[0], *q = t->corners[1], *r = t->corners[2], *alone = p;
     bool p_below = p[s->v] <= middle, q_below = q[s->v] <= middle, up = p_below;
     if (p_below == q_below) {
-        up = r[s->v] <= middle;
-        if (up == p_below) {
-            return;
-        }
         alone = r;
         r = p;
+        up = !p_below;
     } else if ((r[s->v] <= middle) == p_below) {
         alone = q;
         q = p;

@@ -4,11 +4,7 @@
  */
 #include "base/vec.h"
 
-/* Squares between these have neither overflown nor lost bits to underflow. */
-#define SQUARE_MIN R(1e-24)
-#define SQUARE_MAX R(1e24)
-
-/* Components between LEAST and MOST have squares in that range; one step brings the others in, or near. */
+/* Components between LEAST and MOST have squares in VEC_SQUARE_MIN to VEC_SQUARE_MAX; one step brings the others in, or near. */
 #define LEAST R(1e-11)
 #define MOST R(1e11)
 #if ASET_REAL_BITS == 32
@@ -37,7 +33,7 @@ static NOINLINE aset_vec3 in_range(aset_vec3 a, int *steps) {
 
 aset_real aset_vec_length(aset_vec3 a) {
     aset_real square = vec_dot(a, a);
-    if (square > SQUARE_MIN && square < SQUARE_MAX) {
+    if (square > VEC_SQUARE_MIN && square < VEC_SQUARE_MAX) {
         return real_sqrt(square);
     }
     if (!(vec_largest(a) > 0)) {
@@ -57,7 +53,7 @@ aset_real aset_vec_length(aset_vec3 a) {
 
 aset_vec3 aset_vec_unit(aset_vec3 a) {
     aset_real square = vec_dot(a, a);
-    if (!(square > SQUARE_MIN && square < SQUARE_MAX)) {
+    if (!(square > VEC_SQUARE_MIN && square < VEC_SQUARE_MAX)) {
         if (!(vec_largest(a) > 0)) {
             return vec(0, 0, 0);
         }
@@ -70,7 +66,7 @@ aset_vec3 aset_vec_unit(aset_vec3 a) {
 
 aset_vec3 aset_vec_unit_length(aset_vec3 a, aset_real *length) {
     aset_real square = vec_dot(a, a);
-    if (!(square > SQUARE_MIN && square < SQUARE_MAX)) {
+    if (!(square > VEC_SQUARE_MIN && square < VEC_SQUARE_MAX)) {
         *length = aset_vec_length(a);
         return aset_vec_unit(a);
     }

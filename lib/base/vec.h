@@ -72,6 +72,10 @@ static inline aset_real vec_at(const aset_vec3 *a, int axis) {
     return axis == 0 ? a->x : axis == 1 ? a->y : a->z;
 }
 
+/* Squares of lengths between these have neither overflown nor lost bits to underflow. */
+#define VEC_SQUARE_MIN R(1e-24)
+#define VEC_SQUARE_MAX R(1e24)
+
 /* The length without overflow or underflow on the way; 0 for the zero vector. */
 aset_real aset_vec_length(aset_vec3 a);
 

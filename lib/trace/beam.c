@@ -26,10 +26,6 @@
 /* Pixels that an outline's edges may err by: a picture's width has 16 bits, and a float 24. */
 #define PAD R(0.02)
 
-/* Lengths whose squares aset_vec_unit takes as they are. */
-#define SQUARE_LOW R(1e-20)
-#define SQUARE_HIGH R(1e20)
-
 /* The eye rays of neighbouring pixels, their numbers side by side, and what they meet. */
 typedef struct beam_rays {
     aset_real origins[3][DRAFT_BEAM], directions[3][DRAFT_BEAM];
@@ -288,7 +284,7 @@ static bool choose(aset_beams *beams, uint32_t column, uint32_t width) {
     return beams->n_chosen > 0;
 }
 
-/* Directions from a perspective eye, of unit length: aset_camera_ray's arithmetic. False: some are too long or short for it. */
+/* Directions from a perspective eye, of unit length: aset_camera_ray's arithmetic. False: some are too long or short before. */
 static bool look_through(aset_real (*restrict directions)[DRAFT_BEAM], const camera *restrict eye, const aset_real *restrict x,
                          const aset_real *restrict y) {
     aset_real square[DRAFT_BEAM], scale[DRAFT_BEAM];
@@ -301,7 +297,7 @@ static bool look_through(aset_real (*restrict directions)[DRAFT_BEAM], const cam
         directions[1][i] = b;
         directions[2][i] = c;
         square[i] = sum;
-        beyond += !((sum > SQUARE_LOW) & (sum < SQUARE_HIGH));
+        beyond += !((sum > VEC_SQUARE_MIN) & (sum < VEC_SQUARE_MAX));
     }
     for (int i = 0; i < DRAFT_BEAM; i++) {
         scale[i] = real_sqrt(square[i]);

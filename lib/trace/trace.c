@@ -92,7 +92,7 @@ static void add_colour(aset_colour *sum, aset_real weight, const aset_colour *co
 #define SAME_SURFACE 7
 
 static bool is_same_surface(const query_hit *before, const query_hit *hit, aset_real clearance) {
-    return before->object == ASET_NO_OBJECT && hit->object == ASET_NO_OBJECT && hit->t - before->t < SAME_SURFACE * clearance;
+    return hit->object == ASET_NO_OBJECT && hit->t - before->t < SAME_SURFACE * clearance; /* an object comes last */
 }
 
 /*

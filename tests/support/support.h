@@ -76,7 +76,7 @@ dvec dvec_unit(dvec a);
 /* --- models --- */
 
 enum { THING_POLYGON, THING_PATCH, THING_SPHERE, THING_CONE, THING_KINDS };
-enum { THING_POINTS_MAX = 12, MODEL_MATERIALS_MAX = 40, MODEL_LIGHTS_MAX = 4 };
+enum { THING_POINTS_MAX = 12, MODEL_MATERIALS_MAX = 40, MODEL_LIGHTS_MAX = 40 };
 
 /* One object. A sphere has points[0] and radii[0], a cone points[0], points[1] and radii. */
 typedef struct thing {
