@@ -1126,20 +1126,36 @@ trade_says_what_render_says() {
     [ "$(wc -l <rows)" -eq $((5 * 4 + 2 * (2 * 2 + 2))) ] || fail "$(wc -l <rows) rows"
 }
 
-# $1: the scene of t/trade.csv; $2: its size.
+# $1: the scene of t/trade.csv; $2: its size; $3: words that it was swept with; $4: the curtailment of the rows, if not 0.5.
 trade_says_the_same() {
     local words
-    works render "$1" -s "$2" -o exact.png
-    awk "$trade_columns"' $c["cells"] != "" && $c["size"] == "'"$2"'" && ($c["curtail"] == 0.5 || $c["cells"] != "flat") {
+    # shellcheck disable=SC2086
+    works render "$1" -s "$2" -o exact.png ${3-}
+    awk "$trade_columns"' $c["cells"] != "" && $c["size"] == "'"$2"'" && ($c["curtail"] == '"${4-0.5}"' || $c["cells"] != "flat") {
         print $c["method"], $c["grid"] == "" ? "--octree-depth=" $c["octree_depth"] : "--grid=" $c["grid"], $c["approx"],
             $c["level"], $c["cells"], $c["peak_bytes"], $c["tests"], $c["cells_visited"], $c["psnr"] }' t/trade.csv >rows
     while read -r method divisions approx level kind bytes tests cells db; do
-        words="-m $method $divisions --approx $approx --approx-depth $level --cells $kind --memory $bytes"
+        words="-m $method $divisions --approx $approx --approx-depth $level --cells $kind --memory $bytes ${3-}"
         # shellcheck disable=SC2086
         works render "$1" $words -s "$2" -o a.png --stats a.json
         [ "$(json a.json work tests) $(json a.json work cells_visited)" = "$tests $cells" ] || fail "$words: other counts"
         [ "$(psnr exact.png a.png)" = "$db" ] || fail "$words: psnr $(psnr exact.png a.png), the table says $db"
     done <rows
+}
+
+# The words of render that say how rays are followed are trade's, too, and a sweep with other ones does not go on from there.
+trade_takes_renders_words() {
+    local words="--depth 3 --samples 4 --leaf 3 --curtail 0.3 --curtail-when more"
+    # shellcheck disable=SC2086
+    works trade "$scenes/balls.nff" -o t -m mset,octree --grids 6 --octree-depth 3 --cells flat,plane -s 24x24 --rounds 1 $words \
+        --approx reflected
+    trade_says_the_same "$scenes/balls.nff" 24x24 "$words" 0.3
+    [ "$(wc -l <rows)" -eq 3 ] || fail "$(wc -l <rows) rows"
+    works trade "$scenes/balls.nff" -o t -m mset --grids 6 -s 24x24 --rounds 1 --depth 1 --approx-depth 0
+    [ "$(awk "$trade_columns"' { print $c["approx"] $c["level"] $c["curtail"] }' t/trade.csv | xargs)" = "none all00.5 all00 all0" ] ||
+        fail "other settings than all rays from depth 0"
+    works trade "$scenes/balls.nff" -o t -m mset --grids 6 -s 24x24 --rounds 1 --approx none
+    [ "$(wc -l <t/trade.csv)" -eq 2 ] || fail "not only the exact setting"
 }
 
 # A model's view depends on the picture's shape, and its materials come from another file.
@@ -1208,6 +1224,9 @@ trade_refuses() {
     wrong_words trade balls --grids 8,,9
     wrong_words trade balls --grids 8,8
     wrong_words trade balls --octree-depths 3,3
+    wrong_words trade balls --samples 3
+    wrong_words trade balls --approx mirrored
+    wrong_words trade balls --depth 0
     wrong_words trade balls --methods mset,other
     wrong_words trade balls --rounds 0
     wrong_words trade balls --cells flat,round
@@ -1243,7 +1262,7 @@ scene_text_is_read_freely budget_exact budget_approximate flat_is_streamed budge
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
 scene_into_render compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
 full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere plan_and_info_at_the_edges plan_keeps_its_word tree_depth_is_kept old_output interrupted progress_bar
-trade_table trade_best_marks trade_says_what_render_says trade_of_a_model trade_resumes trade_page trade_refuses
+trade_table trade_best_marks trade_says_what_render_says trade_takes_renders_words trade_of_a_model trade_resumes trade_page trade_refuses
 "
 # shellcheck disable=SC2086
 run_cases $cases

@@ -25,6 +25,9 @@ static const char help[] =
     "      --grids LIST         divisions of mset, set, grid: N, NXxNYxNZ or auto; default 16,32,64\n"
     "      --octree-depths LIST  halvings in octree, arts, excell; default 4,6\n"
     "      --cells LIST         what cells remember: flat (average textures), normal, plane (drafts); default flat,plane\n"
+    "      --approx KINDS, --approx-depth L   approximate with these rays only, as for render; default see below\n"
+    "      --curtail F, --curtail-when W      trapped rays, as for render; default 0.5 and not at all, less\n"
+    "      --leaf K, --samples N, --depth N   of all settings, as for render; default 1, 1, 5\n"
     "  -s, --sizes LIST         pictures, each WxH or N; default 256x256\n"
     "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   another camera than the scenes'\n"
     "      --up-axis y|z, --ground on|off, --smooth   of models, as for render\n"
@@ -34,10 +37,11 @@ static const char help[] =
     "  -h, --help               this text\n"
     "\n"
     "Each space is drawn exactly, and approximately with all rays from depth 1, all from 0, shadow rays from 0 and eye\n"
-    "rays from 0, each with trapped rays curtailed at 0.5 of a voxel's diagonal and not at all. mset and grid are drawn as\n"
-    "drafts too, with all rays from 0 and shadow rays from 0; nothing is curtailed then. With all rays from 0 a draft of\n"
-    "either is the same and needs neither scene nor space: it is drawn once, as mset. Nor do flat cells of mset and grid\n"
-    "need the scene then. One thread; an arena of exactly the bytes needed; every round measures all settings once.\n"
+    "rays from 0, each with trapped rays curtailed at 0.5 of a voxel's diagonal and not at all, unless words say\n"
+    "otherwise. mset and grid are drawn as drafts too, with all rays from 0 and shadow rays from 0; nothing is curtailed\n"
+    "then. With all rays from 0 a draft of either is the same and needs neither scene nor space: it is drawn once, as\n"
+    "mset. Nor do flat cells of mset and grid need the scene then. One thread; an arena of exactly the bytes needed;\n"
+    "every round measures all settings once.\n"
     "\n"
     "DIR/trade.csv has a row for each setting; a field that does not apply is empty. build_s and render_s are medians over\n"
     "the rounds, with the smallest and the largest; no reading of the scene is in them. time is build_s + render_s as a\n"
@@ -184,6 +188,7 @@ static bool parse_words(trade_words *w, int argc, char **argv) {
         {"sizes", required_argument, NULL, 's'},
         {"rounds", required_argument, NULL, OPTION_ROUNDS},
         {"quick", no_argument, NULL, OPTION_QUICK},
+        SETTINGS_DRAWING_OPTIONS,
         SETTINGS_CAMERA_OPTIONS,
         SETTINGS_MODEL_OPTIONS,
         SETTINGS_SMOOTH_OPTION,

@@ -19,12 +19,11 @@ typedef struct trade_approx {
     uint32_t mask, level;
 } trade_approx;
 
-enum { TRADE_EXACT = 0, TRADE_APPROXES = 5 };
+/* Exact, the four that are tried of themselves, and what --approx and --approx-depth say if it is none of them. */
+enum { TRADE_EXACT = 0, TRADE_GIVEN = 5, TRADE_APPROXES = 6 };
 /* What a cell may remember: settings_cells, and the words for them. */
 enum { TRADE_CELLS = 3 };
 extern const char *const trade_cells[TRADE_CELLS];
-extern const trade_approx trade_approxes[TRADE_APPROXES];
-
 /* The words of the command line; a list of length 0, methods 0: not given. */
 #define TRADE_LIST_MAX 16u
 typedef struct trade_words {
@@ -33,7 +32,7 @@ typedef struct trade_words {
     unsigned cells;   /* bits, by settings_cells */
     uint32_t grids[TRADE_LIST_MAX][3], depths[TRADE_LIST_MAX], sizes[TRADE_LIST_MAX][2];
     uint32_t n_grids, n_depths, n_sizes, rounds;
-    settings settings; /* the camera, and what models get */
+    settings settings; /* the camera, what models get, and how rays are followed */
     bool quick, quiet, wants_help;
 } trade_words;
 
@@ -70,7 +69,8 @@ typedef struct trade_setting {
     trade_group *group;
     const aset_method *method;
     uint32_t grid[3], tree_depth; /* 0: the method has none */
-    unsigned approx;              /* place in trade_approxes */
+    unsigned approx;              /* TRADE_EXACT or another of trade's approxes, */
+    const trade_approx *rays;     /* which is this */
     settings_cells cells;         /* other than flat: a draft */
     double curtail;               /* 0 for a draft too, to which it does not apply */
     size_t need;                  /* bytes of the arena besides the scene's */
@@ -89,6 +89,12 @@ typedef struct trade {
     trade_group *groups;
     trade_setting *settings;
     uint32_t n_scenes, n_groups, n_settings, rounds;
+    trade_approx approxes[TRADE_APPROXES];
+    char given_kinds[48], given_text[80];
+    unsigned wanted; /* bits, by place in approxes; TRADE_EXACT always */
+    double curtails[2];
+    uint32_t n_curtails;
+    settings drawn;  /* depth, samples, leaf, which side is curtailed */
     uint8_t *block; /* for the arenas of all settings, one after the other */
     FILE *partial;  /* open for appending */
     bool quiet;
@@ -107,7 +113,7 @@ void trade_free(trade *t);
 /* Whether no scene is held: the source goes straight into the baker, or into flat cells. */
 bool trade_is_streamed(const trade_setting *s);
 /* Finds a draft's need by baking it. need holds what is needed without the draft before, and all of it afterwards. */
-bool trade_find_need(trade_setting *s);
+bool trade_find_need(const trade *t, trade_setting *s);
 
 /* Draws a setting once into pixels (R, G, B, no gaps); times in microseconds, figures without the error. */
 bool trade_draw(const trade *t, const trade_setting *s, uint8_t *pixels, trade_figures *figures, uint64_t *build_us,

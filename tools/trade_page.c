@@ -108,7 +108,7 @@ static bool print_picture(const trade *t, FILE *f, const trade_setting *s, unsig
     bool is_drafted = s->cells != CELLS_FLAT;
     char *path =
         trade_path(t, "%td-%s-%" PRIu32 "x%" PRIu32 "-%u-%s%s%s.png", group - t->groups + 1, group->scene->label,
-                   group->width, group->height, number, s->approx == TRADE_EXACT ? "exact" : trade_approxes[s->approx].kinds,
+                   group->width, group->height, number, s->approx == TRADE_EXACT ? "exact" : s->rays->kinds,
                    is_drafted ? "-" : "", is_drafted ? trade_cells[s->cells] : "");
     bool done = pixels != NULL && path != NULL && trade_draw(t, s, pixels, &figures, &build_us, &render_us) &&
                 write_picture(path, group, pixels);
@@ -117,10 +117,10 @@ static bool print_picture(const trade *t, FILE *f, const trade_setting *s, unsig
     }
     if (done) {
         (void)fprintf(f, "<figure><img width=\"%" PRIu32 "\" height=\"%" PRIu32 "\" alt=\"%s\" src=\"data:image/png;base64,",
-                      group->width, group->height, trade_approxes[s->approx].text);
+                      group->width, group->height, s->rays->text);
         done = print_base64(f, path);
         (void)fprintf(f, "\"><figcaption>%s%s: %s ", s->approx == TRADE_EXACT ? "" : "approximate ",
-                      trade_approxes[s->approx].text, aset_method_name(s->method));
+                      s->rays->text, aset_method_name(s->method));
         print_grid(f, s);
         (void)fprintf(f, "%s%s%s, time %.2f, %" PRIu64 " bytes, ", is_drafted ? ", cells " : "",
                       is_drafted ? trade_cells[s->cells] : "",
@@ -172,7 +172,7 @@ static void print_row(FILE *f, const trade_setting *s) {
     (void)fprintf(f, "<tr%s><td>%s</td><td>%s</td><td class=\"n\">", s->best ? " class=\"best\"" : "", s->best ? "best" : "",
                   aset_method_name(s->method));
     print_grid(f, s);
-    (void)fprintf(f, "</td><td>%s</td><td>%s</td><td>", trade_approxes[s->approx].text,
+    (void)fprintf(f, "</td><td>%s</td><td>%s</td><td>", s->rays->text,
                   s->approx != TRADE_EXACT ? trade_cells[s->cells] : "");
     if (s->approx != TRADE_EXACT && s->cells == CELLS_FLAT) {
         (void)fprintf(f, s->curtail > 0 ? "%g" : "off", s->curtail);

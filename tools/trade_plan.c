@@ -8,10 +8,11 @@
 #include "trade.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-const trade_approx trade_approxes[TRADE_APPROXES] = {
+static const trade_approx approxes[TRADE_GIVEN] = {
     {"none", "exact", 0, 0},
     {"all", "all rays from depth 1", ASET_ALL_KINDS, 1},
     {"all", "all rays", ASET_ALL_KINDS, 0},
@@ -19,9 +20,8 @@ const trade_approx trade_approxes[TRADE_APPROXES] = {
     {"primary", "eye rays", ASET_PRIMARY, 0},
 };
 const char *const trade_cells[TRADE_CELLS] = {"flat", "normal", "plane"};
-static const double curtails[] = {0.5, 0};
-/* Of trade_approxes, those that a draft is tried with: everything, and shadows beside exact eye rays. */
-static const unsigned draft_approxes[] = {2, 3};
+/* Of these, those that a draft is tried with: everything, and shadows beside exact eye rays. */
+#define DRAFT_APPROXES (1u << 2 | 1u << 3)
 
 /* Of one space: the exact setting, flat ones with and without curtailment, drafts. */
 #define SETTINGS_OF_SPACE (2u * TRADE_APPROXES + (TRADE_CELLS - 1u) * 2u)
@@ -112,8 +112,9 @@ static char *make_label(const char *name) {
     return label;
 }
 
-/* Of what the words say of the camera and of models; nothing if they say nothing. */
+/* Of what the words say of the camera, of models and of rays, but for what a setting's key says; nothing if they say nothing. */
 static uint64_t hash_look(uint64_t hash, const settings *s) {
+    const settings usual = settings_default();
     const struct {
         bool is_given;
         const void *value;
@@ -121,7 +122,10 @@ static uint64_t hash_look(uint64_t hash, const settings *s) {
     } parts[] = {{s->has_from, &s->from, sizeof s->from},       {s->has_at, &s->at, sizeof s->at},
                  {s->has_up, &s->up, sizeof s->up},             {s->has_angle, &s->angle_deg, sizeof s->angle_deg},
                  {s->has_up_axis, &s->up_axis, sizeof s->up_axis}, {s->has_ground, &s->ground, sizeof s->ground},
-                 {s->smooth, &s->smooth, sizeof s->smooth}};
+                 {s->smooth, &s->smooth, sizeof s->smooth},     {s->depth != usual.depth, &s->depth, sizeof s->depth},
+                 {s->samples != usual.samples, &s->samples, sizeof s->samples},
+                 {s->leaf != usual.leaf, &s->leaf, sizeof s->leaf},
+                 {s->curtail_more, &s->curtail_more, sizeof s->curtail_more}};
     for (uint32_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         if (parts[i].is_given) {
             hash = hash_bytes(hash_bytes(hash, &i, sizeof i), parts[i].value, parts[i].size);
@@ -217,6 +221,7 @@ static trade_setting *add_setting(trade *t, trade_group *group, const aset_metho
     memcpy(s->grid, options->divisions, sizeof s->grid);
     s->tree_depth = options->depth;
     s->approx = approx;
+    s->rays = &t->approxes[approx];
     return s;
 }
 
@@ -237,9 +242,12 @@ static bool plan_drafts(trade *t, const trade_words *w, trade_group *group, cons
     bool is_second = method == &aset_grid && (w->methods & 1u) != 0; /* tool_methods[0] is mset */
     bool done = true;
     for (unsigned cells = CELLS_NORMAL; cells < TRADE_CELLS; cells++) {
-        for (size_t i = 0; done && (w->cells >> cells & 1) != 0 && i < sizeof draft_approxes / sizeof draft_approxes[0];
-             i++) {
-            trade_setting *s = add_setting(t, group, method, options, draft_approxes[i]);
+        for (unsigned approx = TRADE_EXACT + 1; done && (w->cells >> cells & 1) != 0 && approx < TRADE_APPROXES; approx++) {
+            bool is_tried = w->settings.has_approx || w->settings.has_approx_depth || (DRAFT_APPROXES >> approx & 1) != 0;
+            if (!is_tried || (t->wanted >> approx & 1) == 0) {
+                continue;
+            }
+            trade_setting *s = add_setting(t, group, method, options, approx);
             s->cells = (settings_cells)cells;
             bool is_streamed = trade_is_streamed(s);
             if (is_streamed && is_second) {
@@ -248,8 +256,8 @@ static bool plan_drafts(trade *t, const trade_words *w, trade_group *group, cons
                 continue;
             }
             const trade_setting *same = find_same_draft(t, s);
-            s->need = same != NULL ? same->need : ASET_BYTES_SCRATCH(ASET_DEPTH_DEFAULT) + (is_streamed ? 0 : size->total);
-            done = same != NULL || trade_find_need(s);
+            s->need = same != NULL ? same->need : ASET_BYTES_SCRATCH(t->drawn.depth) + (is_streamed ? 0 : size->total);
+            done = same != NULL || trade_find_need(t, s);
         }
     }
     return done;
@@ -265,6 +273,7 @@ static bool plan_space(trade *t, const trade_words *w, trade_group *group, const
     memset(&options, 0, sizeof options);
     memcpy(options.divisions, grid, sizeof options.divisions);
     options.depth = depth;
+    options.leaf = t->drawn.leaf;
     if (depth == 0 && grid[0] == 0 && method != &aset_brute) {
         aset_auto_divisions(&scene->loaded.scene, 0, options.divisions);
     }
@@ -279,12 +288,12 @@ static bool plan_space(trade *t, const trade_words *w, trade_group *group, const
         !measured_flat(&scene->loaded, scene->name, method, &options, &flat)) {
         return false;
     }
-    size_t built = size.cells + size.references + size.voxels + summary, scratch = ASET_BYTES_SCRATCH(ASET_DEPTH_DEFAULT);
+    size_t built = size.cells + size.references + size.voxels + summary, scratch = ASET_BYTES_SCRATCH(t->drawn.depth);
     unsigned n_approxes = (w->cells >> CELLS_FLAT & 1) != 0 ? TRADE_APPROXES : 1;
     for (unsigned approx = 0; approx < n_approxes; approx++) {
-        for (size_t c = 0; c < (approx == TRADE_EXACT ? 1 : sizeof curtails / sizeof curtails[0]); c++) {
+        for (uint32_t c = 0; (t->wanted >> approx & 1) != 0 && c < (approx == TRADE_EXACT ? 1 : t->n_curtails); c++) {
             trade_setting *s = add_setting(t, group, method, &options, approx);
-            s->curtail = curtails[c];
+            s->curtail = t->curtails[c];
             size_t held = approx != TRADE_EXACT && built > size.total ? built : size.total;
             s->need = scratch + (trade_is_streamed(s) ? flat : held);
         }
@@ -326,11 +335,42 @@ static bool plan_memory(trade *t) {
     return t->block != NULL;
 }
 
+/* What is swept of approximations: all that are known, or the one that the words say. */
+static void plan_approxes(trade *t, const settings *s) {
+    static const struct {
+        uint32_t mask;
+        const char *word;
+    } kinds[] = {{ASET_PRIMARY, "primary"}, {ASET_SHADOW, "shadow"}, {ASET_REFLECTED, "reflected"}, {ASET_REFRACTED, "refracted"}};
+    memcpy(t->approxes, approxes, sizeof approxes);
+    t->wanted = (1u << TRADE_GIVEN) - 1;
+    if (!s->has_approx && !s->has_approx_depth) {
+        return;
+    }
+    uint32_t mask = s->has_approx ? s->approx_kinds : ASET_ALL_KINDS;
+    unsigned place = mask == 0 ? TRADE_EXACT : TRADE_GIVEN;
+    for (unsigned i = TRADE_EXACT + 1; i < TRADE_GIVEN; i++) {
+        place = approxes[i].mask == mask && approxes[i].level == s->approx_depth ? i : place;
+    }
+    t->wanted = 1u << TRADE_EXACT | 1u << place;
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        if ((mask & kinds[i].mask) != 0) {
+            strcat(strcat(t->given_kinds, t->given_kinds[0] != '\0' ? "," : ""), kinds[i].word);
+        }
+    }
+    const char *words = mask == ASET_ALL_KINDS ? "all" : t->given_kinds;
+    (void)snprintf(t->given_text, sizeof t->given_text, "%s rays from depth %" PRIu32, words, s->approx_depth);
+    t->approxes[TRADE_GIVEN] = (trade_approx){words, t->given_text, mask, s->approx_depth};
+}
+
 bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names) {
     size_t per_group = (size_t)SETTINGS_OF_SPACE * 8 * TRADE_LIST_MAX; /* 8 methods at the most, each with a full list */
     t->directory = w->directory;
     t->rounds = w->rounds;
     t->quiet = w->quiet;
+    t->drawn = w->settings;
+    t->curtails[0] = w->settings.curtail;
+    t->n_curtails = w->settings.has_curtail ? 1 : 2; /* that and none at all */
+    plan_approxes(t, &w->settings);
     t->scenes = calloc(n_names, sizeof *t->scenes);
     t->groups = calloc((size_t)n_names * w->n_sizes, sizeof *t->groups);
     t->settings = calloc(n_names * w->n_sizes * per_group, sizeof *t->settings);

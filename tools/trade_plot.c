@@ -26,11 +26,11 @@
 #define COLUMNS_MAX 3u
 #define NAME_MAX_CHARS 60u
 
-/* Of trade_approxes: gnuplot's number of the filled shape (the open one is one below), and a colour (Okabe and Ito 2008). */
+/* Of approximations: gnuplot's number of the filled shape (the open one is one below), and a colour (Okabe and Ito 2008). */
 static const struct {
     int shape;
     const char *colour;
-} styles[TRADE_APPROXES] = {{5, "#000000"}, {7, "#0072b2"}, {9, "#d55e00"}, {11, "#009e73"}, {13, "#cc79a7"}};
+} styles[TRADE_APPROXES] = {{5, "#000000"}, {7, "#0072b2"}, {9, "#d55e00"}, {11, "#009e73"}, {13, "#cc79a7"}, {15, "#e69f00"}};
 
 /*
  * Blocks of points: two for each approximation (open, filled), one for each kind of drafts and approximation, the rings.
@@ -210,6 +210,14 @@ static bool has_cells(const scale *a, settings_cells cells) {
     return has;
 }
 
+static bool has_approx(const scale *a, unsigned approx) {
+    bool has = false;
+    for (uint32_t i = 0; i < a->t->n_settings; i++) {
+        has = has || (a->t->settings[i].group == a->group && a->t->settings[i].approx == approx);
+    }
+    return has;
+}
+
 static void print_legend(FILE *f, const scale *a, int height) {
     (void)fprintf(
         f,
@@ -218,9 +226,11 @@ static void print_legend(FILE *f, const scale *a, int height) {
         "set key center center horizontal Left reverse maxcols 3 samplen 1 width 2 spacing 1.3\n"
         "set xrange [0:1]\nset yrange [0:1]\nplot ",
         (FOOT_PX - 15.0) / height, 10.0 / height);
-    for (int i = 0; i < TRADE_APPROXES; i++) {
-        (void)fprintf(f, "NaN with points pt %d ps 0.95 lc '%s' title '%s%s', ", styles[i].shape, styles[i].colour,
-                      i > TRADE_EXACT ? "approximate: " : "", trade_approxes[i].text);
+    for (unsigned i = 0; i < TRADE_APPROXES; i++) {
+        if (has_approx(a, i)) {
+            (void)fprintf(f, "NaN with points pt %d ps 0.95 lc '%s' title '%s%s', ", styles[i].shape, styles[i].colour,
+                          i > TRADE_EXACT ? "approximate: " : "", a->t->approxes[i].text);
+        }
     }
     for (int cells = CELLS_NORMAL; cells < TRADE_CELLS; cells++) {
         if (has_cells(a, (settings_cells)cells)) {

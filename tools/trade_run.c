@@ -34,8 +34,7 @@ typedef struct drawing {
 } drawing;
 
 bool trade_is_streamed(const trade_setting *s) {
-    const trade_approx *approx = &trade_approxes[s->approx];
-    return tool_streams(s->method, approx->mask, approx->level);
+    return tool_streams(s->method, s->rays->mask, s->rays->level);
 }
 
 /* One reading into the baker. */
@@ -81,13 +80,14 @@ static aset_status flatten(const trade_setting *s, drawing *d, const aset_space_
 }
 
 /* In the order of `aset render`. d is all zeros but for the arena. */
-static aset_status build(const trade_setting *s, drawing *d) {
+static aset_status build(const trade *t, const trade_setting *s, drawing *d) {
     const aset_scene *scene = &s->group->scene->loaded.scene;
     aset_space_options options;
     memset(&options, 0, sizeof options);
     memcpy(options.divisions, s->grid, sizeof options.divisions);
     options.depth = s->tree_depth;
-    aset_status status = aset_scratch_init(&d->scratch, ASET_DEPTH_DEFAULT, &d->arena);
+    options.leaf = t->drawn.leaf;
+    aset_status status = aset_scratch_init(&d->scratch, t->drawn.depth, &d->arena);
     if (status == ASET_OK && trade_is_streamed(s) && s->cells == CELLS_FLAT) {
         return flatten(s, d, &options);
     }
@@ -102,9 +102,8 @@ static aset_status build(const trade_setting *s, drawing *d) {
     return status;
 }
 
-static aset_status render(const trade_setting *s, drawing *d, uint8_t *pixels, aset_statistics *statistics) {
+static aset_status render(const trade *t, const trade_setting *s, drawing *d, uint8_t *pixels, aset_statistics *statistics) {
     const trade_group *group = s->group;
-    const trade_approx *approx = &trade_approxes[s->approx];
     bool is_drafted = s->cells != CELLS_FLAT, is_streamed = trade_is_streamed(s);
     const aset_scene *stage = is_drafted ? &d->draft.stage : &d->stage;
     aset_tracer tracer;
@@ -117,9 +116,12 @@ static aset_status render(const trade_setting *s, drawing *d, uint8_t *pixels, a
     tracer.summary = s->approx != TRADE_EXACT && !is_drafted ? &d->summary : NULL;
     tracer.draft = is_drafted ? &d->draft : NULL;
     tracer.draft_sides = s->cells == CELLS_NORMAL;
-    tracer.approx_kinds = approx->mask;
-    tracer.approx_depth = approx->level;
+    tracer.approx_kinds = s->rays->mask;
+    tracer.approx_depth = s->rays->level;
     tracer.curtail = (aset_real)s->curtail;
+    tracer.curtail_more = t->drawn.curtail_more;
+    tracer.depth = t->drawn.depth;
+    tracer.samples = t->drawn.samples;
     view.width_px = picture.width = group->width;
     view.height_px = picture.height = group->height;
     picture.format = ASET_RGB888;
@@ -132,12 +134,12 @@ static aset_status render(const trade_setting *s, drawing *d, uint8_t *pixels, a
 #define NEED_SHARE 32u
 
 /* False if it is another error than too little memory, of which *size is then enough for one more try. */
-static bool try_need(trade_setting *s, size_t *size, bool *found) {
+static bool try_need(const trade *t, trade_setting *s, size_t *size, bool *found) {
     drawing d;
     memset(&d, 0, sizeof d);
     void *block = malloc(*size);
     aset_status status = block != NULL ? aset_arena_init(&d.arena, block, *size) : ASET_ERR_NOMEM;
-    status = status == ASET_OK ? build(s, &d) : status;
+    status = status == ASET_OK ? build(t, s, &d) : status;
     free(block);
     *found = status == ASET_OK;
     s->need = *found ? d.arena.peak : s->need;
@@ -148,17 +150,17 @@ static bool try_need(trade_setting *s, size_t *size, bool *found) {
     return block != NULL && (status == ASET_OK || status == ASET_ERR_NOMEM);
 }
 
-bool trade_find_need(trade_setting *s) {
+bool trade_find_need(const trade *t, trade_setting *s) {
     size_t size =
         s->need + 4 * ASET_BYTES_BAKE(s->grid[0], s->grid[1], s->grid[2]) + 65536u; /* two doublings, and a stage */
     bool found = false, fine = true;
     size_t low = s->need;
     while (fine && !found) {
-        fine = try_need(s, &size, &found);
+        fine = try_need(t, s, &size, &found);
     }
     while (fine && s->need > low + s->need / NEED_SHARE) {
         size_t middle = low + (s->need - low) / 2, more = middle;
-        fine = try_need(s, &more, &found);
+        fine = try_need(t, s, &more, &found);
         low = found ? low : middle;
     }
     return fine;
@@ -173,12 +175,12 @@ bool trade_draw(const trade *t, const trade_setting *s, uint8_t *pixels, trade_f
     double start = tool_seconds();
     aset_status status = aset_arena_init(&d.arena, t->block, s->need);
     if (status == ASET_OK) {
-        status = build(s, &d);
+        status = build(t, s, &d);
     }
     *build_us = microseconds_since(start + d.reading_s);
     start = tool_seconds();
     if (status == ASET_OK) {
-        status = render(s, &d, pixels, &n);
+        status = render(t, s, &d, pixels, &n);
     }
     *render_us = microseconds_since(start);
     if (d.told) {

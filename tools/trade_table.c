@@ -65,7 +65,6 @@ static void print_grid(FILE *stream, const uint32_t grid[3]) {
 }
 
 static char *make_key(const trade_setting *s) {
-    const trade_approx *approx = &trade_approxes[s->approx];
     char *key = NULL;
     size_t size;
     FILE *stream = open_memstream(&key, &size);
@@ -80,9 +79,11 @@ static char *make_key(const trade_setting *s) {
         (void)fprintf(stream, "%" PRIu32, s->tree_depth);
     }
     if (s->approx == TRADE_EXACT) {
-        (void)fprintf(stream, ",%s,,,", approx->kinds);
+        (void)fprintf(stream, ",%s,,,", s->rays->kinds);
     } else {
-        (void)fprintf(stream, ",%s,%" PRIu32 ",%s,", approx->kinds, approx->level, trade_cells[s->cells]);
+        (void)fputc(',', stream);
+        print_field(stream, s->rays->kinds);
+        (void)fprintf(stream, ",%" PRIu32 ",%s,", s->rays->level, trade_cells[s->cells]);
         if (s->cells == CELLS_FLAT) {
             (void)fprintf(stream, "%g", s->curtail);
         }
