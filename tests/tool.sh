@@ -991,6 +991,33 @@ plan_keeps_its_word() {
 
 # A tree's depth is 6 unless said}
 
+# What is given of a setting is not chosen, and render takes the words of the plan within its bytes.
+plan_takes_renders_words() {
+    local scene=$scenes/balls.nff words given
+    while read -r given words; do
+        # shellcheck disable=SC2086
+        works plan "$scene" -s 48 $words --json -q
+        [ "$(json "$out" method) $(json "$out" grid) $(json "$out" approx) $(json "$out" approx_depth)" = "$(echo "$given" | tr _ ' ')" ] ||
+            fail "$words: $(cat "$out")"
+        # shellcheck disable=SC2086
+        works render "$scene" -s 48 $words --memory "$(json "$out" bytes)"
+    done <<'END'
+"grid"_"9x9x9"_"none"_1 --method grid --grid 9
+"mset"_"9x8x7"_"shadow"_0 --method mset --grid 9x8x7 --approx shadow --approx-depth 0
+"set"_"6x6x6"_"primary,reflected"_1 --method set --grid 6 --approx primary,reflected --curtail 0.1 --curtail-when more --depth 2 --samples 4
+"grid"_"9x9x9"_"all"_0 --method grid --grid 9 --approx all --approx-depth 0
+"brute"_"1x1x1"_"none"_1 --method brute
+END
+    tool plan "$scene" -s 48 --memory 100 --grid 9 --approx none
+    refused 1 "aset: $scene: the picture needs "
+    tool plan "$scene" --method octree
+    refused 2 "aset: --method: "
+    tool plan "$scene" --leaf 2
+    refused 2 "aset: --leaf: "
+    tool plan "$scene" --method brute --grid 4
+    refused 2 "aset: plan: --method: "
+}
+
 # A tree's depth is 6 unless said otherwise, and never less in silence.
 tree_depth_is_kept() {
     works render "$scenes/balls.nff" -s 8x8 -m octree --stats s.json
@@ -1261,7 +1288,7 @@ bad_announced_but_missing_points bad_order bad_views bad_objects bad_camera_opti
 scene_text_is_read_freely budget_exact budget_approximate flat_is_streamed budget_of_two_threads budget_is_what_info_says
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
 scene_into_render compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
-full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere plan_and_info_at_the_edges plan_keeps_its_word tree_depth_is_kept old_output interrupted progress_bar
+full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere plan_and_info_at_the_edges plan_keeps_its_word plan_takes_renders_words tree_depth_is_kept old_output interrupted progress_bar
 trade_table trade_best_marks trade_says_what_render_says trade_takes_renders_words trade_of_a_model trade_resumes trade_page trade_refuses
 "
 # shellcheck disable=SC2086

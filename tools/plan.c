@@ -15,18 +15,23 @@ static const char help[] =
     "      --header FILE    write the sizes of this scene and setting, and the switches it needs, as a C header: of a program\n"
     "                       that holds the scene, as render does not where everything is approximate\n"
     "                       (-: to standard output, instead of the plan)\n"
+    "  -m, --method NAME, --grid N                       of mset, grid, set and brute this method alone; these divisions alone\n"
+    "      --approx KINDS, --approx-depth L              with these rays (default all) approximate, and no others\n"
+    "      --curtail F, --curtail-when W, --samples N    as for render\n"
     "  -s, --size WxH|N     the picture; default the scene's, else 512x512\n"
     "      --depth N        rays in a chain; default 5\n"
     "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   another camera than the scene's\n"
     "      --up-axis y|z, --ground on|off, --smooth   of models, as for render\n"
     "      --all            print every setting that was probed, before the one chosen\n"
     "      --json           the plan as JSON, a line for each setting\n"
+    "  -q, --quiet          taken as everywhere; a plan has no progress bar\n"
     "  -h, --help           this text\n"
     "\n"
-    "Bytes are exact. Times and PSNR are expected from a sample of the picture's rays; time is said as the ratio to the exact\n"
-    "picture by MSET at automatic divisions. Settings are MSET, grid and SET with up to 5 numbers of divisions\n"
-    "each, more where none of them fits (then a large scene may take some seconds), and at last brute force; exact, and with --error or --time, or where nothing exact\n"
-    "fits, also approximate in three ways. Those that fit are probed for about a second, the finest first.\n";
+    "Bytes are exact. Times and PSNR are expected from a sample of the picture's rays; time is said as the ratio to the\n"
+    "exact picture by MSET at automatic divisions. Settings are MSET, grid and SET with up to 5 numbers of divisions each,\n"
+    "more where none of them fits (then a large scene may take some seconds), and at last brute force; exact, and with\n"
+    "--error or --time, or where nothing exact fits, also approximate in three ways, unless words say otherwise. Those that\n"
+    "fit are probed for about a second, the finest first. With --samples the error expected is that of one sample.\n";
 
 typedef struct request {
     plan_wish wish;
@@ -35,14 +40,12 @@ typedef struct request {
     bool all, json, wants_help;
 } request;
 
-static const char *kinds_words(const plan_setting *s) {
-    return s->approx_kinds == 0 ? "none" : s->approx_kinds == ASET_SHADOW ? "shadow" : "all";
-}
-
 static void print_setting(const plan *p, const plan_setting *s) {
+    char kinds[SETTINGS_KINDS_BYTES];
+    settings_kinds(kinds, s->approx_kinds);
     (void)printf("--method %-4s --grid %" PRIu32 "x%" PRIu32 "x%" PRIu32 " --approx %-6s --approx-depth %" PRIu32
                  ": %8zu bytes, %.2f of the exact time, ",
-                 aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds_words(s),
+                 aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds,
                  s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes, s->seconds / p->exact_seconds);
     if (s->approx_kinds == 0) {
         (void)printf("exact%s\n", s->fits ? "" : ", does not fit");
@@ -52,10 +55,12 @@ static void print_setting(const plan *p, const plan_setting *s) {
 }
 
 static void print_json(const plan *p, const plan_setting *s) {
+    char kinds[SETTINGS_KINDS_BYTES];
+    settings_kinds(kinds, s->approx_kinds);
     (void)printf("{\"method\":\"%s\",\"grid\":\"%" PRIu32 "x%" PRIu32 "x%" PRIu32
                  "\",\"approx\":\"%s\",\"approx_depth\":%" PRIu32
                  ",\"bytes\":%zu,\"relative_time\":%.4f,\"seconds\":%.4f,\"psnr\":%.2f}\n",
-                 aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds_words(s),
+                 aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds,
                  s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes, s->seconds / p->exact_seconds, s->seconds, s->psnr);
 }
 
@@ -103,7 +108,15 @@ static bool plan_from(const request *r, tool_source *source) {
         return false;
     }
     plan_wish wish = r->wish;
+    const settings *given = &r->settings;
     wish.holds_scene = r->header != NULL;
+    wish.samples = given->samples;
+    wish.curtail = given->curtail;
+    wish.curtail_more = given->curtail_more;
+    memcpy(wish.grid, given->grid, sizeof wish.grid);
+    wish.has_approx = given->has_approx || given->has_approx_depth;
+    wish.approx_kinds = given->has_approx ? given->approx_kinds : ASET_ALL_KINDS;
+    wish.approx_depth = given->approx_depth;
     aset_view *view = &m.scene.view;
     wish.width = r->settings.width > 0 ? r->settings.width : view->width_px > 0 ? view->width_px : 512;
     wish.height = r->settings.height > 0 ? r->settings.height : view->height_px > 0 ? view->height_px : 512;
@@ -112,15 +125,26 @@ static bool plan_from(const request *r, tool_source *source) {
     return done;
 }
 
+static bool parse_method(plan_wish *w, const char *text) {
+    w->method = tool_method_find(text);
+    if (w->method != &aset_mset && w->method != &aset_grid && w->method != &aset_set && w->method != &aset_brute) {
+        tool_error(NULL, 0, "--method: a plan has no \"%s\", expected mset, grid, set or brute", text);
+        return false;
+    }
+    return true;
+}
+
 static bool parse_option(request *r, int option) {
     plan_wish *w = &r->wish;
     switch (option) {
-    case 'm': return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &w->memory);
+    case 'm': return parse_method(w, optarg);
+    case 'g': return tool_parse_grid("--grid", optarg, ASET_DIVISIONS_MAX, r->settings.grid);
+    case 'q': return true;
+    case 'M': return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &w->memory);
     case 'e': return tool_parse_real("--error", optarg, 1, 99, &w->error_db);
     case 't': return tool_parse_real("--time", optarg, 0.001, 1e9, &w->time_ms);
     case 'H': r->header = optarg; return true;
     case 's': return tool_parse_size("--size", optarg, TOOL_DRAWN_MAX, &r->settings.width, &r->settings.height);
-    case 'd': return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &w->depth);
     case 'a': r->all = true; return true;
     case 'j': r->json = true; return true;
     case 'h': r->wants_help = true; return true;
@@ -130,9 +154,11 @@ static bool parse_option(request *r, int option) {
 
 static bool parse_request(request *r, int argc, char **argv) {
     static const struct option longs[] = {
-        {"memory", required_argument, NULL, 'm'}, {"error", required_argument, NULL, 'e'},
+        {"memory", required_argument, NULL, 'M'}, {"error", required_argument, NULL, 'e'},
+        {"method", required_argument, NULL, 'm'}, {"grid", required_argument, NULL, 'g'},
+        {"quiet", no_argument, NULL, 'q'},        SETTINGS_DRAWING_OPTIONS,
         {"time", required_argument, NULL, 't'},   {"header", required_argument, NULL, 'H'},
-        {"size", required_argument, NULL, 's'},   {"depth", required_argument, NULL, 'd'},
+        {"size", required_argument, NULL, 's'},
         {"all", no_argument, NULL, 'a'},          {"json", no_argument, NULL, 'j'},
         {"help", no_argument, NULL, 'h'},         SETTINGS_CAMERA_OPTIONS,
         SETTINGS_MODEL_OPTIONS,                   SETTINGS_SMOOTH_OPTION,
@@ -142,14 +168,22 @@ static bool parse_request(request *r, int argc, char **argv) {
     memset(r, 0, sizeof *r);
     r->settings = settings_default();
     r->wish.memory = 8u << 20;
-    r->wish.depth = ASET_DEPTH_DEFAULT;
-    while ((option = tool_option_next(argc, argv, "s:h", longs)) != -1) {
+    while ((option = tool_option_next(argc, argv, "m:s:qh", longs)) != -1) {
         if (option == '?' || !parse_option(r, option)) {
             return false;
         }
         if (r->wants_help) {
             return true;
         }
+    }
+    r->wish.depth = r->settings.depth;
+    if (r->settings.leaf > 0) {
+        tool_error(NULL, 0, "--leaf: a plan has no octree, ARTS or EXCELL, expected a plan without");
+        return false;
+    }
+    if (r->wish.method == &aset_brute && (r->settings.grid[0] > 0 || r->settings.approx_kinds != 0)) {
+        tool_error(NULL, 0, "plan: --method: brute force has no divisions and approximates nothing here, expected mset, grid or set");
+        return false;
     }
     if (r->wish.error_db > 0 && r->wish.time_ms > 0) {
         tool_error(NULL, 0, "plan: --error and --time are alternatives, expected one of them");

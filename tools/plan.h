@@ -17,11 +17,17 @@ typedef struct plan_setting {
     bool fits;
 } plan_setting;
 
-/* What is asked for; error_db and time_ms 0: not asked. */
+/* What is asked for; error_db and time_ms 0: not asked. What is given of a setting is not chosen. */
 typedef struct plan_wish {
     uint64_t memory;
     double error_db, time_ms;
-    uint32_t width, height, depth;
+    uint32_t width, height, depth, samples; /* samples: along one side of a pixel */
+    double curtail;
+    bool curtail_more;
+    const aset_method *method;           /* NULL: any */
+    uint32_t grid[3];                    /* 0: any */
+    bool has_approx;                     /* these rays are approximate, and no others */
+    uint32_t approx_kinds, approx_depth;
     bool holds_scene; /* the bytes are those of a program that holds the scene, whatever is approximate */
 } plan_wish;
 

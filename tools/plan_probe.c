@@ -36,7 +36,6 @@
 #define SET_MOST 160u        /* divisions of SET to begin with; its cells grow by their cube, and 100 slices pass for many */
 #define QUICK 4              /* times the unit: what nobody would draw by brute force */
 #define SLOWER 1.5          /* than a step before: no coarser divisions of this method, where time counts */
-#define R_CURTAIL ((aset_real)0.5)
 
 /* What is measured is the processor's time: a busy machine makes everything wait, but computes no more. */
 static double cpu_seconds(void) {
@@ -48,9 +47,8 @@ typedef struct level {
     uint32_t kinds, depth;
 } level;
 
-/* What may be approximate: nothing, shadows, all from the second ray on, everything. */
-static const level levels[] = {{0, 0}, {ASET_SHADOW, 0}, {ASET_ALL_KINDS, 1}, {ASET_ALL_KINDS, 0}};
-#define N_LEVELS (sizeof levels / sizeof levels[0])
+/* What may be approximate unless it is given: nothing, shadows, all from the second ray on, everything. */
+static const level usual_levels[] = {{0, 0}, {ASET_SHADOW, 0}, {ASET_ALL_KINDS, 1}, {ASET_ALL_KINDS, 0}};
 
 /* A space and a summary at one number of divisions, in memory of their own. */
 typedef struct built {
@@ -75,6 +73,9 @@ typedef struct probing {
     const char *path;
     double start, unit_rate; /* unit_rate: seconds for an eye ray, exact */
     built unit;
+    level given;
+    const level *levels;
+    size_t n_levels;
     aset_scratch scratch;
     aset_vec3 forward, right, down; /* of the camera */
     sample sample;
@@ -88,8 +89,11 @@ typedef struct error_sums {
     uint64_t values;
 } error_sums;
 
-/* Approximate settings are asked for: by an error or a time, or as nothing exact fits. */
+/* Approximate settings are asked for: by an error or a time, as nothing exact fits, or by name. */
 static bool wants_approximate(const plan *p, const plan_wish *wish) {
+    if (wish->has_approx) {
+        return wish->approx_kinds != 0;
+    }
     return wish->error_db > 0 || wish->time_ms > 0 || p->exact_bytes > wish->memory;
 }
 
@@ -261,7 +265,8 @@ static double draw(const probing *q, const built *b, uint32_t kinds, uint32_t de
     tracer.summary = kinds != 0 ? &b->summary : NULL;
     tracer.approx_kinds = kinds;
     tracer.approx_depth = depth;
-    tracer.curtail = R_CURTAIL;
+    tracer.curtail = (aset_real)q->wish->curtail;
+    tracer.curtail_more = q->wish->curtail_more;
     tracer.depth = q->wish->depth;
     double start = cpu_seconds();
     for (uint32_t i = 0; limit < INFINITY && i < n; i += THIN) {
@@ -303,8 +308,9 @@ static double doubt_of(const error_sums *e) {
     return e->squares > 0 ? sqrt(e->squares_of_runs) / e->squares : INFINITY;
 }
 
+/* As many as there are eye rays. */
 static double pixels(const probing *q) {
-    return (double)q->wish->width * q->wish->height;
+    return (double)q->wish->width * q->wish->height * q->wish->samples * q->wish->samples;
 }
 
 static double sample_pixels(const probing *q) {
@@ -325,25 +331,27 @@ static void probe_levels(plan *p, probing *q, const built *b, const aset_method 
     for (size_t i = 0; i < n_levels && p->n < PLAN_SETTINGS_MAX; i++) {
         plan_setting *s = &p->settings[p->n];
         error_sums e = {0, 0, 0};
-        double seconds = draw(q, b, levels[i].kinds, levels[i].depth, LONG_SECONDS, q->drawn);
+        const level *l = &q->levels[i];
+        double seconds = draw(q, b, l->kinds, l->depth, LONG_SECONDS, q->drawn);
         memset(s, 0, sizeof *s);
         s->method = method;
         memcpy(s->grid, grid, sizeof s->grid);
-        s->approx_kinds = levels[i].kinds;
-        s->approx_depth = levels[i].depth;
-        s->textures = i == 0 ? 0 : b->summary.n_textures;
+        s->approx_kinds = l->kinds;
+        s->approx_depth = l->depth;
+        s->textures = l->kinds == 0 ? 0 : b->summary.n_textures;
         s->size = b->size;
         s->bytes = is_streamed(b, method, s->approx_kinds, s->approx_depth)
                        ? b->flat_bytes
-                       : bytes_of(q, &b->size, i == 0 ? 0 : b->summary_bytes);
+                       : bytes_of(q, &b->size, l->kinds == 0 ? 0 : b->summary_bytes);
         s->seconds = build_seconds(b, method, s->approx_kinds, s->approx_depth) + seconds * pixels(q) / sample_pixels(q);
         s->psnr = METRICS_PSNR_MAX;
         s->fits = s->bytes <= q->wish->memory;
-        if (i > 0) {
+        if (l->kinds != 0) {
             add_errors(&e, q);
             s->psnr = psnr_of(&e);
             /* not drawn to the end, or not seen to differ: its error is not known, which matters only if there is a choice */
-            q->refused[p->n] = (seconds > LONG_SECONDS || e.squares <= 0) && p->exact_bytes <= q->wish->memory;
+            q->refused[p->n] =
+                (seconds > LONG_SECONDS || e.squares <= 0) && p->exact_bytes <= q->wish->memory && !q->wish->has_approx;
         }
         p->n++;
     }
@@ -352,7 +360,7 @@ static void probe_levels(plan *p, probing *q, const built *b, const aset_method 
 /* Does an exact setting fit, or any where none can? */
 static bool any_fits(const plan *p, const plan_wish *wish) {
     for (int i = 0; i < p->n; i++) {
-        if (p->settings[i].fits && (p->settings[i].approx_kinds == 0 || p->exact_bytes > wish->memory)) {
+        if (p->settings[i].fits && (p->settings[i].approx_kinds == 0 || p->exact_bytes > wish->memory || wish->has_approx)) {
             return true;
         }
     }
@@ -394,7 +402,7 @@ static bool probe(plan *p, probing *q, const aset_method *method, const uint32_t
     if (!build(&b, q, method, grid, approximate)) {
         return false;
     }
-    probe_levels(p, q, &b, method, grid, approximate ? N_LEVELS : 1);
+    probe_levels(p, q, &b, method, grid, approximate ? q->n_levels : 1);
     free(b.block);
     return true;
 }
@@ -456,6 +464,25 @@ static bool probe_step(plan *p, probing *q, const aset_method *method, const uin
     return true;
 }
 
+/* Divisions to try at a step, unless they are given. */
+static bool choose_step(const probing *q, int step, const aset_method *method, uint32_t grid[3]) {
+    if (q->wish->method != NULL && q->wish->method != method) {
+        return false;
+    }
+    if (q->wish->grid[0] == 0) {
+        return step_down(q->m, step, method, grid);
+    }
+    memcpy(grid, q->wish->grid, sizeof q->wish->grid);
+    return step == 0;
+}
+
+/* May brute force be an answer, and does nothing else do? */
+static bool wants_brute(const plan *p, const probing *q) {
+    const plan_wish *wish = q->wish;
+    bool may = (wish->method == NULL || wish->method == &aset_brute) && wish->grid[0] == 0 && !(wish->has_approx && wish->approx_kinds != 0);
+    return may && !any_exact_quick(p) && p->exact_bytes <= wish->memory;
+}
+
 static bool probe_all(plan *p, probing *q) {
     const uint32_t one[3] = {1, 1, 1};
     double last[N_METHODS] = {0};
@@ -464,7 +491,7 @@ static bool probe_all(plan *p, probing *q) {
     for (int i = 0; more && (i < STEPS || !any_fits(p, q->wish)); i++) {
         more = false;
         for (size_t k = 0; k < N_METHODS; k++) {
-            if (step_down(q->m, i, methods[k], grid)) {
+            if (choose_step(q, i, methods[k], grid)) {
                 more = true;
                 if (!probe_step(p, q, methods[k], grid, &last[k])) {
                     return false;
@@ -472,7 +499,7 @@ static bool probe_all(plan *p, probing *q) {
             }
         }
     }
-    return any_exact_quick(p) || p->exact_bytes > q->wish->memory || probe(p, q, &aset_brute, one);
+    return !wants_brute(p, q) || probe(p, q, &aset_brute, one);
 }
 
 /* --- the choice --- */
@@ -605,7 +632,7 @@ static bool refine(plan *p, probing *q, int chosen, double end, bool first) {
     settle(p, q, chosen, &b, &rate, first);
     if (s->approx_kinds != 0) {
         s->psnr = psnr_of(&e);
-        q->refused[chosen] = !(doubt_of(&e) <= DOUBT_MAX) && sample_pixels(q) < pixels(q);
+        q->refused[chosen] = !(doubt_of(&e) <= DOUBT_MAX) && sample_pixels(q) < pixels(q) && !q->wish->has_approx;
     }
     free(b.block);
     return true;
@@ -649,6 +676,10 @@ bool plan_make(plan *p, measured *m, const char *path, const plan_wish *wish) {
         q->m = m;
         q->wish = wish;
         q->path = path;
+        q->given.kinds = wish->approx_kinds;
+        q->given.depth = wish->approx_depth;
+        q->levels = wish->has_approx && wish->approx_kinds != 0 ? &q->given : usual_levels;
+        q->n_levels = q->levels == &q->given ? 1 : sizeof usual_levels / sizeof usual_levels[0];
         q->start = tool_seconds();
         q->scratch.stack = stack;
         q->scratch.capacity = wish->depth;

@@ -63,6 +63,10 @@ enum {
 /* Takes one of them, its value being in optarg. False: after an error line, or it is none of them. */
 bool settings_option(settings *s, int option);
 
+/* Kinds of rays as --approx takes them. */
+#define SETTINGS_KINDS_BYTES 48u
+void settings_kinds(char text[SETTINGS_KINDS_BYTES], uint32_t kinds);
+
 /* A scene's view with the camera's words laid over it. False after an error line. */
 bool settings_view(aset_view *view, const settings *s, const char *path);
 

@@ -37,15 +37,29 @@ static bool parse_samples(settings *s, const char *text) {
     return true;
 }
 
+/* One by one, then those that stand for several. */
+static const tool_word kind_words[] = {{"primary", ASET_PRIMARY},     {"shadow", ASET_SHADOW}, {"reflected", ASET_REFLECTED},
+                                       {"refracted", ASET_REFRACTED}, {"all", ASET_ALL_KINDS}, {"none", 0},
+                                       {NULL, 0}};
+
+void settings_kinds(char text[SETTINGS_KINDS_BYTES], uint32_t kinds) {
+    size_t n = 0;
+    for (int i = 0; i < 4 && kinds != ASET_ALL_KINDS; i++) {
+        if ((kinds & kind_words[i].value) != 0) {
+            n += (size_t)snprintf(text + n, SETTINGS_KINDS_BYTES - n, "%s%s", n > 0 ? "," : "", kind_words[i].name);
+        }
+    }
+    if (n == 0) {
+        (void)snprintf(text, SETTINGS_KINDS_BYTES, "%s", kinds == ASET_ALL_KINDS ? "all" : "none");
+    }
+}
+
 static bool drawing_option(settings *s, int option) {
-    static const tool_word kinds[] = {{"primary", ASET_PRIMARY},     {"shadow", ASET_SHADOW}, {"reflected", ASET_REFLECTED},
-                                      {"refracted", ASET_REFRACTED}, {"all", ASET_ALL_KINDS}, {"none", 0},
-                                      {NULL, 0}},
-                           sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}};
+    static const tool_word sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}};
     unsigned word = 0;
     switch (option) {
     case SETTINGS_APPROX:
-        if (!tool_parse_words("--approx", optarg, kinds, &word)) {
+        if (!tool_parse_words("--approx", optarg, kind_words, &word)) {
             return false;
         }
         s->approx_kinds = word;

@@ -25,7 +25,7 @@ static const char help[] =
     "      --grids LIST         divisions of mset, set, grid: N, NXxNYxNZ or auto; default 16,32,64\n"
     "      --octree-depths LIST  halvings in octree, arts, excell; default 4,6\n"
     "      --cells LIST         what cells remember: flat (average textures), normal, plane (drafts); default flat,plane\n"
-    "      --approx KINDS, --approx-depth L   approximate with these rays only, as for render; default see below\n"
+    "      --approx KINDS, --approx-depth L   approximate with these rays (default all) from that depth only; else as below\n"
     "      --curtail F, --curtail-when W      trapped rays, as for render; default 0.5 and not at all, less\n"
     "      --leaf K, --samples N, --depth N   of all settings, as for render; default 1, 1, 5\n"
     "  -s, --sizes LIST         pictures, each WxH or N; default 256x256\n"

@@ -90,7 +90,7 @@ typedef struct trade {
     trade_setting *settings;
     uint32_t n_scenes, n_groups, n_settings, rounds;
     trade_approx approxes[TRADE_APPROXES];
-    char given_kinds[48], given_text[80];
+    char given_kinds[SETTINGS_KINDS_BYTES], given_text[80];
     unsigned wanted; /* bits, by place in approxes; TRADE_EXACT always */
     double curtails[2];
     uint32_t n_curtails;

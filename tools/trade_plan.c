@@ -337,10 +337,6 @@ static bool plan_memory(trade *t) {
 
 /* What is swept of approximations: all that are known, or the one that the words say. */
 static void plan_approxes(trade *t, const settings *s) {
-    static const struct {
-        uint32_t mask;
-        const char *word;
-    } kinds[] = {{ASET_PRIMARY, "primary"}, {ASET_SHADOW, "shadow"}, {ASET_REFLECTED, "reflected"}, {ASET_REFRACTED, "refracted"}};
     memcpy(t->approxes, approxes, sizeof approxes);
     t->wanted = (1u << TRADE_GIVEN) - 1;
     if (!s->has_approx && !s->has_approx_depth) {
@@ -352,14 +348,9 @@ static void plan_approxes(trade *t, const settings *s) {
         place = approxes[i].mask == mask && approxes[i].level == s->approx_depth ? i : place;
     }
     t->wanted = 1u << TRADE_EXACT | 1u << place;
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        if ((mask & kinds[i].mask) != 0) {
-            strcat(strcat(t->given_kinds, t->given_kinds[0] != '\0' ? "," : ""), kinds[i].word);
-        }
-    }
-    const char *words = mask == ASET_ALL_KINDS ? "all" : t->given_kinds;
-    (void)snprintf(t->given_text, sizeof t->given_text, "%s rays from depth %" PRIu32, words, s->approx_depth);
-    t->approxes[TRADE_GIVEN] = (trade_approx){words, t->given_text, mask, s->approx_depth};
+    settings_kinds(t->given_kinds, mask);
+    (void)snprintf(t->given_text, sizeof t->given_text, "%s rays from depth %" PRIu32, t->given_kinds, s->approx_depth);
+    t->approxes[TRADE_GIVEN] = (trade_approx){t->given_kinds, t->given_text, mask, s->approx_depth};
 }
 
 bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names) {
