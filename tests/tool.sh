@@ -718,6 +718,31 @@ scene_into_render() {
     same a.png y.png "a file as standard input gives another picture"
 }
 
+# What comes on standard input is known by how it begins, as a file without a name is.
+models_on_standard_input() {
+    local name
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n' >a.obj
+    printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 1\nendloop\nendfacet\nendsolid a\n' >b.stl
+    printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n' >c.ply
+    printf 'property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 1\n3 0 1 2\n' >>c.ply
+    works bake a.obj --grid 8 -o d.draft
+    for name in a.obj b.stl c.ply d.draft; do
+        works $name file.png -s 24x16
+        # shellcheck disable=SC2002
+        cat $name | "$aset" - pipe.png -s 24x16 2>"$err" || fail "$name by a pipe: $(cat "$err")"
+        same file.png pipe.png "$name by a pipe gives another picture"
+        "$aset" render - -o input.png -s 24x16 --approx all --approx-depth 0 --cells plane --memory 1M <$name || fail "$name as standard input"
+        same file.png input.png "$name as standard input gives another picture"
+    done
+    "$aset" info - <b.stl >"$out" || fail "info of a model on standard input"
+    status=0
+    "$aset" bake - -o e.draft <d.draft >"$out" 2>"$err" || status=$?
+    refused 1 "aset: -: a baked draft"
+    status=0
+    "$aset" render - <&- >"$out" 2>"$err" || status=$?
+    refused 1 "aset: -: cannot be read: "
+}
+
 compare_figures_and_status() {
     local figure
     works render "$scenes/balls.nff" -s 40x40 -o a.png
@@ -1287,7 +1312,7 @@ bad_scene_on_standard_input bad_cut_off_files bad_prefixes bad_letters_for_numbe
 bad_announced_but_missing_points bad_order bad_views bad_objects bad_camera_options extreme_coordinates
 scene_text_is_read_freely budget_exact budget_approximate flat_is_streamed budget_of_two_threads budget_is_what_info_says
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
-scene_into_render compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
+scene_into_render models_on_standard_input compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
 full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere plan_and_info_at_the_edges plan_keeps_its_word plan_takes_renders_words tree_depth_is_kept old_output interrupted progress_bar
 trade_table trade_best_marks trade_says_what_render_says trade_takes_renders_words trade_of_a_model trade_resumes trade_page trade_refuses
 "

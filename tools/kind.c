@@ -4,7 +4,8 @@
  *
  * The formats give themselves away: a PLY begins with its name; a binary STL has 84 bytes and 50 for each triangle that it
  * announces, a text one begins with "solid" and has a facet; an OBJ is lines of words, of which the first that is no comment
- * tells. NFF, whose v looks alike, needs its name. A baked draft begins with a word of its own.
+ * tells. NFF, whose v looks alike, needs its name, or is what comes on standard input and is nothing else. A baked draft begins with a
+ * word of its own.
  */
 #include "tool.h"
 
@@ -20,20 +21,28 @@ typedef struct look {
     uint64_t size; /* of the whole file */
 } look;
 
+static bool look_into(look *l, FILE *file) {
+    struct stat status;
+    if (file == NULL || fstat(fileno(file), &status) != 0) {
+        return false;
+    }
+    l->n = fread(l->bytes, 1, LOOK_BYTES, file);
+    l->bytes[l->n] = '\0';
+    l->size = (uint64_t)status.st_size;
+    return true;
+}
+
 static bool look_at(look *l, const char *path) {
     struct stat status;
     if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) {
         return false;
     }
     FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        return false;
+    bool done = look_into(l, file);
+    if (file != NULL) {
+        (void)fclose(file);
     }
-    l->n = fread(l->bytes, 1, LOOK_BYTES, file);
-    l->bytes[l->n] = '\0';
-    l->size = (uint64_t)status.st_size;
-    (void)fclose(file);
-    return true;
+    return done;
 }
 
 static bool is_binary_stl(const look *l) {
@@ -89,6 +98,10 @@ static tool_kind kind_of_bytes(const look *l) {
 tool_kind tool_kind_of(const char *path) {
     static const char *const extensions[] = {".nff", ".obj", ".stl", ".ply", ".draft"};
     look l;
+    if (strcmp(path, "-") == 0) {
+        tool_kind kind = look_into(&l, tool_input_open(path)) ? kind_of_bytes(&l) : TOOL_KIND_NONE;
+        return kind != TOOL_KIND_NONE ? kind : TOOL_KIND_NFF;
+    }
     for (unsigned i = 0; i < sizeof extensions / sizeof extensions[0]; i++) {
         if (tool_has_extension(path, extensions[i])) {
             return (tool_kind)(TOOL_KIND_NFF + i);
@@ -98,5 +111,5 @@ tool_kind tool_kind_of(const char *path) {
 }
 
 bool tool_is_draft(const char *path) {
-    return strcmp(path, "-") != 0 && tool_kind_of(path) == TOOL_KIND_DRAFT;
+    return tool_kind_of(path) == TOOL_KIND_DRAFT;
 }

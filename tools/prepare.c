@@ -421,14 +421,10 @@ static bool open_baked(prepared *p, const settings *s, FILE *file) {
 }
 
 static bool prepare_baked(prepared *p, const settings *s) {
-    FILE *file = fopen(p->path, "rb");
+    FILE *file = tool_input_open(p->path);
     double start = tool_seconds();
-    if (file == NULL) {
-        tool_error(p->path, 0, "cannot be opened: %s", strerror(errno));
-        return false;
-    }
-    bool done = tool_input_note(file, p->path) && open_baked(p, s, file);
-    (void)fclose(file);
+    bool done = file != NULL && open_baked(p, s, file);
+    tool_input_close(file);
     p->load_s = tool_seconds() - start;
     return done;
 }

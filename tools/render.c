@@ -16,7 +16,7 @@
 static const char help[] =
     "aset render SCENE [-o OUT.png]: draws a scene exactly or approximately, in a fixed block of memory.\n"
     "SCENE is an .nff file, a model (.obj, .stl, .ply), a .draft that aset bake made (which is drawn with --approx all\n"
-    "--approx-depth 0 --cells plane), or - for NFF on standard input. Without -o the picture is drawn\n"
+    "--approx-depth 0 --cells plane), or - for any of these on standard input. Without -o the picture is drawn\n"
     "and thrown away. A model, which has none, gets a view that shows all of it, two lights, a ground and a background.\n"
     "\n"
     "  -o, --output FILE       .png or .ppm; - for PNG on standard output\n"

@@ -27,30 +27,6 @@ static ptrdiff_t read_stream(void *context, void *buffer, size_t size) {
     return n == 0 && ferror(stream) ? -1 : (ptrdiff_t)n;
 }
 
-/* Standard input, or whatever else cannot be read twice, goes through a temporary file. */
-static FILE *make_seekable(const char *path, FILE *stream) {
-    char buffer[16384];
-    size_t n;
-    FILE *copy = tmpfile();
-    if (copy == NULL) {
-        tool_error(path, 0, "no temporary file to keep the input in: %s", strerror(errno));
-        return NULL;
-    }
-    while ((n = fread(buffer, 1, sizeof buffer, stream)) > 0) {
-        if (fwrite(buffer, 1, n, copy) != n) {
-            tool_error(path, 0, "the temporary file for the input cannot be written: %s", strerror(errno));
-            (void)fclose(copy);
-            return NULL;
-        }
-    }
-    if (ferror(stream) || fflush(copy) != 0) {
-        tool_error(path, 0, "cannot be read: %s", strerror(errno));
-        (void)fclose(copy);
-        return NULL;
-    }
-    return copy;
-}
-
 /* 0 if it is no file that has a size. */
 static uint64_t size_of(FILE *stream) {
     struct stat status;
@@ -327,8 +303,7 @@ void tool_source_set(tool_source *source, const settings *s) {
 }
 
 bool tool_source_open(tool_source *source, const char *path) {
-    bool is_input = strcmp(path, "-") == 0;
-    tool_kind kind = is_input ? TOOL_KIND_NFF : tool_kind_of(path);
+    tool_kind kind = tool_kind_of(path);
     memset(source, 0, sizeof *source);
     source->path = path;
     if (kind == TOOL_KIND_NONE && access(path, R_OK) != 0) {
@@ -351,29 +326,12 @@ bool tool_source_open(tool_source *source, const char *path) {
     }
     source->format = (tool_format)(kind - TOOL_KIND_NFF);
     source->stage.up = source->format == TOOL_OBJ ? ASET_UP_Y : ASET_UP_Z;
-    source->stream = is_input ? stdin : fopen(path, "rb");
-    if (source->stream == NULL) {
-        tool_error(path, 0, "cannot be opened: %s", strerror(errno));
-        return false;
-    }
-    if (!tool_input_note(source->stream, path)) {
-        tool_source_close(source);
-        return false;
-    }
-    if (fseek(source->stream, 0, SEEK_SET) != 0) {
-        FILE *copy = make_seekable(path, source->stream);
-        if (!is_input) {
-            (void)fclose(source->stream);
-        }
-        source->stream = copy;
-    }
+    source->stream = tool_input_open(path);
     source->size = source->stream != NULL ? size_of(source->stream) : 0;
     return source->stream != NULL;
 }
 
 void tool_source_close(tool_source *source) {
-    if (source->stream != NULL && source->stream != stdin) {
-        (void)fclose(source->stream);
-    }
+    tool_input_close(source->stream);
     source->stream = NULL;
 }

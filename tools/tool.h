@@ -135,6 +135,15 @@ void tool_print_in_comment(FILE *stream, const char *text);
 /* The words for a path in an error line: "standard output" for "-". */
 const char *tool_output_name(const char *path);
 
+/* --- input.c --- */
+
+/*
+ * A file, - for standard input, from its start, to be read as often as wanted. NULL after an error line, or where standard input has
+ * failed and said so.
+ */
+FILE *tool_input_open(const char *path);
+void tool_input_close(FILE *input);
+
 /* --- png.c: pictures as rows and as a whole --- */
 
 /* Of a picture that is read or joined, and of one that is drawn. */
