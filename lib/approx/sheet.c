@@ -113,11 +113,12 @@ static void make_plane(sheet *s) {
 /* Columns that are looked at one by one: the places of a span's ends are longer to find. */
 #define FEW_COLUMNS 3
 
-/* The columns whose middles lie between from and to, of those from first to end, which hold them all. */
+/* The columns whose middles lie between from and to, of those from first to end. */
 static inline void fill_span(aset_baker *b, sheet *s, aset_real from, aset_real to, int32_t row, int32_t first, int32_t end) {
     if (end - first > FEW_COLUMNS) {
-        first = first_column(from, columns_on(b, s->u));
-        end = first_column(to, columns_on(b, s->u));
+        int32_t above = first_column(from, columns_on(b, s->u)), below = first_column(to, columns_on(b, s->u));
+        first = above > first ? above : first;
+        end = below < end ? below : end;
     }
     for (int32_t column = first; column < end; column++) {
         aset_real middle = (aset_real)column + R(0.5);
@@ -164,6 +165,40 @@ static inline bool sheet_begin(sheet *s, const aset_real normal[3], const aset_r
     return normal[s->a] != 0;
 }
 
+/* The columns upwards that this pass's blocks are among: low to, not including, high. */
+typedef struct layers {
+    int32_t low, high;
+} layers;
+
+static inline layers layers_of_pass(const aset_baker *b) {
+    uint32_t in_layer = b->blocks[0] * b->blocks[1];
+    layers l = {(int32_t)(b->floor_block / in_layer * 16), (int32_t)((b->ceiling_block - 1) / in_layer * 16 + 16)};
+    return l;
+}
+
+/*
+ * What a further pass has to look at of a surface whose columns reach from..to: of one that goes up through the layers of blocks, the
+ * columns in its own layers, and of one that lies, all or nothing. A first pass looks at all, to count those that are unseen.
+ * False: nothing.
+ */
+static bool enters_pass(const aset_baker *b, sheet *s, int32_t from[3], int32_t to[3]) {
+    if (b->floor_block == 0) {
+        return true;
+    }
+    layers l = layers_of_pass(b);
+    if (s->a != 2) {
+        from[2] = from[2] > l.low ? from[2] : l.low;
+        to[2] = to[2] < l.high ? to[2] : l.high;
+        return true;
+    }
+    make_plane(s);
+    aset_real u = real_max(real_abs((aset_real)from[0] - s->at_u), real_abs((aset_real)to[0] - s->at_u));
+    aset_real v = real_max(real_abs((aset_real)from[1] - s->at_v), real_abs((aset_real)to[1] - s->at_v));
+    aset_real above = s->at_a + real_abs(s->slope_u) * u + real_abs(s->slope_v) * v + 1, below = 2 * s->at_a - above;
+    /* what leaves the cells counts in the outermost layers */
+    return (l.low == 0 || above >= (aset_real)l.low) && (l.high >= (int32_t)b->n[2] * 4 || below <= (aset_real)l.high);
+}
+
 /* Newell's normal, from the first point so that nothing large cancels. */
 static aset_vec3 normal_of(const aset_real *points, uint32_t n) {
     aset_vec3 normal = {0, 0, 0};
@@ -177,12 +212,12 @@ static aset_vec3 normal_of(const aset_real *points, uint32_t n) {
 }
 
 /* A polygon in columns, which reach from..to on each axis. */
-static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings, const int32_t from[3],
-                           const int32_t to[3]) {
+static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings, int32_t from[3],
+                           int32_t to[3]) {
     aset_vec3 facing = normal_of(points, n);
     const aset_real normal[3] = {facing.x, facing.y, facing.z};
     sheet s;
-    if (sheet_begin(&s, normal, points)) {
+    if (sheet_begin(&s, normal, points) && enters_pass(b, &s, from, to)) {
         for (int32_t row = from[s.v]; row < to[s.v] && b->failure == ASET_OK; row++) {
             fill_row(b, &s, points, n, row, from[s.u], to[s.u], crossings);
         }
@@ -275,12 +310,12 @@ static inline void fill_triangle_row(aset_baker *b, sheet *s, const triangle *t,
     fill_span(b, s, real_min(x, y), real_max(x, y), row, t->from[s->u], t->to[s->u]);
 }
 
-static void sample_triangle(aset_baker *b, const triangle *t) {
+static void sample_triangle(aset_baker *b, triangle *t) {
     const aset_real *p = t->corners[0], *q = t->corners[1], *r = t->corners[2];
     aset_vec3 facing = vec_cross(vec(q[0] - p[0], q[1] - p[1], q[2] - p[2]), vec(r[0] - p[0], r[1] - p[1], r[2] - p[2]));
     const aset_real normal[3] = {facing.x, facing.y, facing.z};
     sheet s;
-    if (sheet_begin(&s, normal, p)) {
+    if (sheet_begin(&s, normal, p) && enters_pass(b, &s, t->from, t->to)) {
         for (int32_t row = t->from[s.v]; row < t->to[s.v] && b->failure == ASET_OK; row++) {
             fill_triangle_row(b, &s, t, row);
         }
@@ -288,17 +323,13 @@ static void sample_triangle(aset_baker *b, const triangle *t) {
     }
 }
 
-/*
- * Is nothing of a triangle in this pass's blocks? Its plane does not leave its box, so that none of its samples is in another layer. A
- * first pass looks at all, to count those that are unseen.
- */
+/* Is nothing of a triangle in a further pass's layers? Its plane does not leave its box: so that is seen before anything is computed. */
 static inline bool is_elsewhere(const aset_baker *b, const triangle *t) {
     if (b->floor_block == 0) {
         return false;
     }
-    uint32_t in_layer = b->blocks[0] * b->blocks[1], low = (uint32_t)(t->from[2] > 0 ? t->from[2] - 1 : 0) / 16;
-    uint32_t high = (uint32_t)t->to[2] / 16;
-    return (high + 1) * in_layer <= b->floor_block || low * in_layer >= b->ceiling_block;
+    layers l = layers_of_pass(b);
+    return t->to[2] < l.low || t->from[2] > l.high;
 }
 
 /*
