@@ -305,6 +305,18 @@ static void test_nff__line_ends(void **state) {
     expect_log("\n\n \t b\t1 1\t\t1 \n\r\n" VIEW "\n\n", "back 1 1 1; " VIEW_LOG);
 }
 
+static void test_nff__a_mark_of_utf8(void **state) {
+    (void)state;
+    expect_log("\xef\xbb\xbf" "b 1 1 1\n" VIEW, "back 1 1 1; " VIEW_LOG);
+    expect_log("\xef\xbb\xbf# from an editor\n" VIEW, VIEW_LOG);
+    static const bad_case bad[] = {
+        {"\xef\xbb\xbf@", 1, ASET_ERR_SYNTAX, "", "empty"},
+        {"@\xef\xbb", 1, ASET_ERR_SYNTAX, "??", "an unknown entity"},
+        {"\xef\xbb\xbf@\xef\xbb\xbf" "b 1 1 1", 1, ASET_ERR_SYNTAX, "???b", "an unknown entity"},
+    };
+    expect_all_bad(bad, COUNT_OF(bad));
+}
+
 static void test_nff__comments_anywhere(void **state) {
     (void)state;
     expect_log("# first\n#\n##b 9 9 9\nb 1 # the green:\n 1#and blue\n1 # \xc3\xa9\xff end\n" VIEW "# no end of line",
@@ -1239,6 +1251,7 @@ int main(void) {
         cmocka_unit_test(test_nff__light_colour_is_what_follows_as_numbers),
         cmocka_unit_test(test_nff__values_above_one_pass),
         cmocka_unit_test(test_nff__line_ends),
+        cmocka_unit_test(test_nff__a_mark_of_utf8),
         cmocka_unit_test(test_nff__comments_anywhere),
         cmocka_unit_test(test_nff__exponents),
         cmocka_unit_test(test_nff__materials_without_objects),

@@ -134,7 +134,7 @@ static void test_obj__smooth(void **state) {
 
 static const char *const books[] = {
     "a.mtl",
-    "# materials\nnewmtl red\nKd 1 0 0\nKa 1 1 1\nKs .25 .5 .125\nNs 10\nillum 2\nmap_Kd red.png\n\nnewmtl grey\nKd .5\n"
+    "\xef\xbb\xbfnewmtl red\n# materials\nKd 1 0 0\nKa 1 1 1\nKs .25 .5 .125\nNs 10\nillum 2\nmap_Kd red.png\n\nnewmtl grey\nKd .5\n"
     "newmtl red\nKd 0 0 0\nnewmtl a name of its own\nKd 0 1 0\n",
     "b c.mtl",
     "newmtl blue\r\nKd 0 0 \\\r\n 1\r\nNs -2\r\n",

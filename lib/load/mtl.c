@@ -298,7 +298,8 @@ static aset_status search_one(search *s, const char *name, bool *there, aset_loa
         return ASET_OK;
     }
     aset_reader_init(&s->reader, read, stream, &own);
-    const aset_status status = read_library(s);
+    aset_status status = aset_reader_skip_mark(&s->reader);
+    status = status == ASET_OK ? read_library(s) : status;
     if (status != ASET_OK) {
         report_library(report, &own, name);
     }

@@ -471,8 +471,9 @@ aset_status aset_load_nff(const aset_sink *sink, aset_read read, void *context, 
     file.sink = sink;
     file.one_sided_opaque = options != NULL && options->one_sided_opaque;
     file.has_view = file.has_material = false;
-    for (bool empty = true;; empty = false) {
-        aset_status status = aset_reader_next(&file.reader);
+    aset_status status = aset_reader_skip_mark(&file.reader);
+    for (bool empty = true; status == ASET_OK; empty = false) {
+        status = aset_reader_next(&file.reader);
         if (status == ASET_OK && file.reader.length == 0) {
             if (file.has_view) {
                 return ASET_OK;
@@ -483,8 +484,6 @@ aset_status aset_load_nff(const aset_sink *sink, aset_read read, void *context, 
         if (status == ASET_OK) {
             status = read_entity(&file);
         }
-        if (status != ASET_OK) {
-            return status;
-        }
     }
+    return status;
 }

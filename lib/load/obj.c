@@ -205,17 +205,6 @@ static aset_status read_line(obj *file) {
     return aset_reader_skip_line(reader);
 }
 
-/* Some editors begin a text in UTF-8 with a mark of three bytes. */
-static aset_status skip_mark(aset_reader *reader) {
-    const unsigned char *bytes;
-    size_t n;
-    const aset_status status = aset_reader_peek(reader, 3, &bytes, &n);
-    if (status == ASET_OK && n == 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
-        aset_reader_advance(reader, 3);
-    }
-    return status;
-}
-
 aset_status aset_load_obj(const aset_sink *sink, aset_read read, void *context, const aset_load_options *options,
                           aset_load_report *report) {
     obj file;
@@ -229,7 +218,7 @@ aset_status aset_load_obj(const aset_sink *sink, aset_read read, void *context, 
     memset(file.corners, 0, sizeof file.corners);
     reader->joiner = '\\';
     reader->cut = "the file ends within a line";
-    status = skip_mark(reader);
+    status = aset_reader_skip_mark(reader);
     while (status == ASET_OK) {
         status = aset_reader_next(reader);
         if (status == ASET_OK && reader->length == 0) {

@@ -313,6 +313,21 @@ void aset_reader_advance(aset_reader *reader, size_t n) {
     reader->after_cr = false;
 }
 
+aset_status aset_reader_skip_mark(aset_reader *reader) {
+    const unsigned char *bytes;
+    size_t n;
+    int byte;
+    aset_status status = look(reader, &byte); /* of other texts no more is asked for */
+    if (status != ASET_OK || byte != 0xef) {
+        return status;
+    }
+    status = aset_reader_peek(reader, 3, &bytes, &n);
+    if (status == ASET_OK && n == 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
+        aset_reader_advance(reader, 3);
+    }
+    return status;
+}
+
 /* ---- tokens ---- */
 
 /* The current token begins at the next byte. */

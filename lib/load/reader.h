@@ -60,6 +60,9 @@ void aset_reader_init(aset_reader *reader, aset_read read, void *context, aset_l
 /* Right after init: bytes are read into this block of capacity bytes instead. */
 void aset_reader_lend(aset_reader *reader, unsigned char *block, size_t capacity);
 
+/* Right after init, or lend: skips the mark of three bytes that some editors begin a text in UTF-8 with. */
+aset_status aset_reader_skip_mark(aset_reader *reader);
+
 /* Makes the next token the current one; its length is 0 at the end of the input. ASET_ERR_READ, ASET_ERR_SYNTAX. */
 aset_status aset_reader_next(aset_reader *reader);
 
