@@ -1039,8 +1039,11 @@ END
     refused 2 "aset: --method: "
     tool plan "$scene" --leaf 2
     refused 2 "aset: --leaf: "
-    tool plan "$scene" --method brute --grid 4
-    refused 2 "aset: plan: --method: "
+    for words in "--grid 4" "--approx shadow" "--approx-depth 0"; do
+        # shellcheck disable=SC2086
+        tool plan "$scene" --method brute $words
+        refused 2 "aset: plan: --method: "
+    done
 }
 
 # A tree's depth is 6 unless said otherwise, and never less in silence.

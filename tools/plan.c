@@ -181,7 +181,9 @@ static bool parse_request(request *r, int argc, char **argv) {
         tool_error(NULL, 0, "--leaf: a plan has no octree, ARTS or EXCELL, expected a plan without");
         return false;
     }
-    if (r->wish.method == &aset_brute && (r->settings.grid[0] > 0 || r->settings.approx_kinds != 0)) {
+    const settings *given = &r->settings;
+    bool is_approximate = given->has_approx ? given->approx_kinds != 0 : given->has_approx_depth;
+    if (r->wish.method == &aset_brute && (given->grid[0] > 0 || is_approximate)) {
         tool_error(NULL, 0, "plan: --method: brute force has no divisions and approximates nothing here, expected mset, grid or set");
         return false;
     }
