@@ -71,6 +71,11 @@ baked_drafts_draw_the_same_picture() {
     works bake "$scenes/block.stl" --grid 20 --ground=off -o c.draft
     ! cmp -s a.draft b.draft || fail "--up-axis and --ground change nothing"
     same b.draft c.draft "the same model as .obj and .stl, z up, gives other drafts"
+    works bake "$scenes/block.stl" --grid 20 -s 20x50 -o d.draft
+    works render d.draft -s 20x50 -o d.ppm
+    # shellcheck disable=SC2086
+    works render "$scenes/block.stl" --grid 20 $draft_words -s 20x50 -o e.ppm
+    same d.ppm e.ppm "a draft for upright pictures is not seen as the model in one"
 }
 
 a_draft_is_drawn_from_anywhere() {

@@ -15,16 +15,16 @@
 #define PREFIX "draft_"
 
 static const char help[] =
-    "aset bake MODEL -o FILE: makes a draft of a model (.obj, .stl, .ply) or scene (.nff) to keep: a program, or aset "
-    "render\n"
-    "FILE, draws any view of it. MODEL is read three times or so, more often the less memory there is for what its voxels hold (up to\n"
-    "twenty times by default); no object of it is held. A model's own view shows all of it in square pictures and wider.\n"
+    "aset bake MODEL -o FILE: makes a draft of a model (.obj, .stl, .ply) or scene (.nff) to keep: a program, or aset\n"
+    "render FILE, draws any view of it. MODEL is read three times or so, more often the less memory there is for what its\n"
+    "voxels hold, some dozens of times where it barely fits; no object of it is held.\n"
     "\n"
     "  -o, --output FILE     FILE.h: a C header with the draft as a const array. Any other name, .draft say, or - for\n"
     "                        standard output: the draft's 32-bit words, the lowest byte first\n"
     "      --grid N          divisions on every axis; or NXxNYxNZ, or auto (cubes, as many as fit); default auto\n"
     "      --memory BYTES    the arena (K = 1024, M): all of it is used to read MODEL less often, and not one byte more;\n"
     "                        default what the divisions rarely exceed in two or three readings, up to 8M\n"
+    "  -s, --size WxH|N      models: a picture of that shape or wider shows all of it by its own view; default square\n"
     "      --up-axis y|z     models: the axis that points upwards; default z for .stl and .ply, y for .obj\n"
     "      --ground on|off   models: a ground under it; default on\n"
     "      --name NAME       of the array in a header; default FILE's own name as an identifier\n"
@@ -278,6 +278,7 @@ static bool parse_option(request *r, int option) {
     case OPTION_GRID: return tool_parse_grid("--grid", optarg, ASET_BAKE_DIVISIONS_MAX, s->grid);
     case OPTION_MEMORY: r->has_memory = true; return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &s->memory);
     case OPTION_NAME: return parse_name(r);
+    case 's': return tool_parse_size("--size", optarg, TOOL_DRAWN_MAX, &s->width, &s->height);
     case 'q': r->quiet = true; return true;
     case 'h': r->wants_help = true; return true;
     default: return settings_option(s, option);
@@ -289,6 +290,7 @@ static bool parse_request(request *r, int argc, char **argv) {
         {"output", required_argument, NULL, 'o'},
         {"grid", required_argument, NULL, OPTION_GRID},
         {"memory", required_argument, NULL, OPTION_MEMORY},
+        {"size", required_argument, NULL, 's'},
         SETTINGS_MODEL_OPTIONS,
         {"name", required_argument, NULL, OPTION_NAME},
         {"quiet", no_argument, NULL, 'q'},
@@ -298,7 +300,7 @@ static bool parse_request(request *r, int argc, char **argv) {
     int option;
     memset(r, 0, sizeof *r);
     r->settings = settings_default();
-    while ((option = tool_option_next(argc, argv, "o:qh", longs)) != -1) {
+    while ((option = tool_option_next(argc, argv, "o:s:qh", longs)) != -1) {
         if (option == '?' || !parse_option(r, option)) {
             return false;
         }
