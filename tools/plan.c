@@ -18,6 +18,7 @@ static const char help[] =
     "  -m, --method NAME, --grid N                       of mset, grid, set and brute this method alone; these divisions alone\n"
     "      --approx KINDS, --approx-depth L              with these rays (default all) approximate, and no others\n"
     "      --curtail F, --curtail-when W, --samples N    as for render\n"
+    "      --leaf K                                      refused: a plan has no octree, ARTS or EXCELL\n"
     "  -s, --size WxH|N     the picture; default the scene's, else 512x512\n"
     "      --depth N        rays in a chain; default 5\n"
     "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   another camera than the scene's\n"
