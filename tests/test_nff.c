@@ -305,6 +305,7 @@ static void test_nff__line_ends(void **state) {
     expect_log("\n\n \t b\t1 1\t\t1 \n\r\n" VIEW "\n\n", "back 1 1 1; " VIEW_LOG);
 }
 
+#if ASET_READER_BUFFER >= 3
 static void test_nff__a_mark_of_utf8(void **state) {
     (void)state;
     expect_log("\xef\xbb\xbf" "b 1 1 1\n" VIEW, "back 1 1 1; " VIEW_LOG);
@@ -316,6 +317,7 @@ static void test_nff__a_mark_of_utf8(void **state) {
     };
     expect_all_bad(bad, COUNT_OF(bad));
 }
+#endif
 
 static void test_nff__comments_anywhere(void **state) {
     (void)state;
@@ -1251,7 +1253,9 @@ int main(void) {
         cmocka_unit_test(test_nff__light_colour_is_what_follows_as_numbers),
         cmocka_unit_test(test_nff__values_above_one_pass),
         cmocka_unit_test(test_nff__line_ends),
+#if ASET_READER_BUFFER >= 3
         cmocka_unit_test(test_nff__a_mark_of_utf8),
+#endif
         cmocka_unit_test(test_nff__comments_anywhere),
         cmocka_unit_test(test_nff__exponents),
         cmocka_unit_test(test_nff__materials_without_objects),

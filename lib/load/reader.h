@@ -14,7 +14,7 @@
 
 #include "number.h"
 
-/* Bytes asked for at once, and the farthest that aset_reader_peek can see; 1 is enough for tokens, 2 with a joiner. */
+/* Bytes asked for at once, and the farthest that aset_reader_peek can see; 1 is enough for tokens, 2 with a joiner, 3 for a mark. */
 #ifndef ASET_READER_BUFFER
 #define ASET_READER_BUFFER 1024u
 #endif
