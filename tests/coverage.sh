@@ -5,7 +5,7 @@
 #
 #     lib/base/arena.c ## the line's text ## why no test takes all its branches
 #
-# The tool's threads count without locks (with -fprofile-update=atomic the tests take three times as long): so a branch or two may be
+# The tool's threads count without locks (with -fprofile-update=atomic the tests take several times as long): so a branch or two may be
 # told otherwise from run to run.
 #
 # A line's text is without the blanks around it; the same text names the same line wherever it stands in the file.
