@@ -465,7 +465,7 @@ static bool probe_step(plan *p, probing *q, const aset_method *method, const uin
 }
 
 /* Divisions to try at a step, unless they are given. */
-static bool choose_step(const probing *q, int step, const aset_method *method, uint32_t grid[3]) {
+static bool choose_divisions(const probing *q, int step, const aset_method *method, uint32_t grid[3]) {
     if (q->wish->method != NULL && q->wish->method != method) {
         return false;
     }
@@ -479,7 +479,8 @@ static bool choose_step(const probing *q, int step, const aset_method *method, u
 /* May brute force be an answer, and does nothing else do? */
 static bool wants_brute(const plan *p, const probing *q) {
     const plan_wish *wish = q->wish;
-    bool may = (wish->method == NULL || wish->method == &aset_brute) && wish->grid[0] == 0 && !(wish->has_approx && wish->approx_kinds != 0);
+    bool may_be_exact = !wish->has_approx || wish->approx_kinds == 0;
+    bool may = may_be_exact && wish->grid[0] == 0 && (wish->method == NULL || wish->method == &aset_brute);
     return may && !any_exact_quick(p) && p->exact_bytes <= wish->memory;
 }
 
@@ -491,7 +492,7 @@ static bool probe_all(plan *p, probing *q) {
     for (int i = 0; more && (i < STEPS || !any_fits(p, q->wish)); i++) {
         more = false;
         for (size_t k = 0; k < N_METHODS; k++) {
-            if (choose_step(q, i, methods[k], grid)) {
+            if (choose_divisions(q, i, methods[k], grid)) {
                 more = true;
                 if (!probe_step(p, q, methods[k], grid, &last[k])) {
                     return false;

@@ -1,5 +1,5 @@
 /*
- * source.c - scene files and models, by their names' endings, as sources of entities that can be read again.
+ * source.c - scene files and models, of whatever kind (kind.c), as sources of entities that can be read again.
  *
  * A model's first reading passes through a sink that follows its box, from which the stage is made. Vertices of OBJ and PLY
  * have a window in memory; when there are more they go to a temporary file.
