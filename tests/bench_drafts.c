@@ -2,7 +2,8 @@
  * bench_drafts.c - from triangles in memory to a finished 512 x 512 picture (eye and shadow rays): a draft of ours, baked and
  * drawn, beside Embree 3 (Wald, Woop, Benthin, Johnson and Ernst 2014), built and drawn. One thread, single-ray calls, the same
  * camera, lights and shading formula; rounds are interleaved, and the ratio printed is the median of the rounds' own ratios.
- * Without Embree, ours alone.
+ * Without Embree, ours alone. Embree takes the widest registers that the machine has; the library those that it was compiled for, of which
+ * there may be two programs.
  *
  *      bench_drafts [--rounds N] [--grid N] [--side N] [--tiles N] [SIZE ...]
  *
@@ -370,6 +371,9 @@ int main(int argc, char **argv) {
     rounds = rounds < 1 ? 1 : rounds > ROUNDS_MAX ? ROUNDS_MAX : rounds;
 #if !BENCH_EMBREE
     printf("built without Embree: ours alone\n");
+#endif
+#ifdef BENCH_WIDE
+    printf("the library compiled with %s:\n", BENCH_WIDE);
 #endif
     bool fine = true;
     if (i == argc) {

@@ -1,6 +1,6 @@
 /*
- * draft_beam.c - eight rays against one voxel: draft_ray.c's arithmetic, number for number, with the rays in the innermost loops and
- * no branch in these, so that compilers use wide registers. A facet is so unpacked once for eight rays.
+ * draft_beam.c - neighbouring rays against one voxel: draft_ray.c's arithmetic, number for number, with the rays in the innermost loops and
+ * no branch in these, so that compilers use wide registers. A facet is so unpacked once for all of them.
  *
  * A ray is in a voxel exactly where the walk would come to it: the walk crosses the slices in order of t, at equal t the lower
  * axis first; so every crossing into the voxel must come before every crossing out of it.
@@ -45,17 +45,24 @@ void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, aset_real 
 #define PLANE_IN(b, a, i, low) ((low) - (b)->turned[a][i] * (2 * (low) + 4))
 #define CROSSING(b, a, i, plane) (((plane) - (b)->from[a][i]) * (b)->inverse[a][i])
 
-/* Which rays, neither done nor ended before, come through the voxel; how many. */
-static int32_t come_through(int32_t *restrict through, const draft_beam *restrict b, const aset_real low[3]) {
+/* Rays are looked at in parts: those of which no ray comes through a voxel are left out. As many as wide registers hold. */
+#define PART 8
+#define PARTS (DRAFT_BEAM / PART)
+#define EACH_OF_PART(k) for (int k = 0; k < PART; k++)
+
+/* Which rays of a part, neither done nor ended before, come through the voxel; how many. */
+static int32_t come_through(int32_t *restrict through, const draft_beam *restrict b, const aset_real low[3], int first) {
     aset_real low_x = low[0], low_y = low[1], low_z = low[2];
     int32_t n = 0;
-    EACH(i) {
+    EACH_OF_PART(k) {
+        int i = first + k;
         aset_real plane_x = PLANE_IN(b, 0, i, low_x), plane_y = PLANE_IN(b, 1, i, low_y), plane_z = PLANE_IN(b, 2, i, low_z);
         aset_real x = CROSSING(b, 0, i, plane_x), out_x = CROSSING(b, 0, i, plane_x + 4);
         aset_real y = CROSSING(b, 1, i, plane_y), out_y = CROSSING(b, 1, i, plane_y + 4);
         aset_real z = CROSSING(b, 2, i, plane_z), out_z = CROSSING(b, 2, i, plane_z + 4);
         int32_t in_order = (x <= out_y) & (x <= out_z) & (y < out_x) & (y <= out_z) & (z < out_x) & (z < out_y);
-        int32_t in_time = (x < b->t_max[i]) & (y < b->t_max[i]) & (z < b->t_max[i]) & (out_x > 0) & (out_y > 0) & (out_z > 0);
+        aset_real in = real_max(x, real_max(y, z)), out = real_min(out_x, real_min(out_y, out_z));
+        int32_t in_time = (in < b->t_max[i]) & (out > 0);
         through[i] = in_order & in_time & (b->left[i] > 0);
         n += through[i];
     }
@@ -65,7 +72,6 @@ static int32_t come_through(int32_t *restrict through, const draft_beam *restric
 /* What all rays have of one facet. */
 typedef struct meetings {
     aset_real t[DRAFT_BEAM], rate[DRAFT_BEAM], u[DRAFT_BEAM], v[DRAFT_BEAM];
-    int32_t met[DRAFT_BEAM];
     uint16_t footprint;
     bool down;
 } meetings;
@@ -95,22 +101,21 @@ static uint32_t columns_v(uint32_t footprint) {
     return (any | any >> 3 | any >> 6 | any >> 9) & 15u;
 }
 
-/* The rays that come through against a facet; met: those of which it may stop anything. */
-static void meet_facet(meetings *restrict m, const draft_beam *restrict b, const int32_t *restrict through, const aset_real middle[3],
-                       uint32_t number) {
-    static const unsigned char next[4] = {1, 2, 0, 0};
-    uint64_t record = facet_record(b->draft, number);
-    uint32_t surface = facet_surface(b->draft, record), footprint = facet_footprint(b->draft, record);
-    aset_real height = facet_height(b->draft, record) - 2;
-    aset_real slope_u = surface_slope_u(surface), slope_v = surface_slope_v(surface);
-    unsigned a = surface_axis(surface), u = next[a], v = next[u];
-    const aset_real *oa = b->o[a], *ou = b->o[u], *ov = b->o[v], *da = b->d[a], *du = b->d[u], *dv = b->d[v];
-    aset_real ma = middle[a], mu = middle[u], mv = middle[v];
-    uint32_t in_u = columns_u(footprint), in_v = columns_v(footprint);
-    aset_real low_u = span_low[in_u], high_u = span_high[in_u], low_v = span_low[in_v], high_v = span_high[in_v];
-    m->footprint = (uint16_t)footprint;
-    m->down = surface_down(surface);
-    EACH(i) {
+/* A facet as the rays meet it: on axis a, over u and v; the middle of its voxel; where it may stop a ray. */
+typedef struct plane {
+    unsigned a, u, v;
+    aset_real height, slope_u, slope_v, middle_a, middle_u, middle_v;
+    aset_real low_u, high_u, low_v, high_v;
+} plane;
+
+/* The rays of a part that come through against a facet; those of which it may stop anything get its bit. */
+static void meet_facet(meetings *restrict m, int32_t *restrict met, int32_t bit, const draft_beam *restrict b,
+                       const int32_t *restrict through, const plane *restrict p, int first) {
+    const aset_real *oa = b->o[p->a], *ou = b->o[p->u], *ov = b->o[p->v], *da = b->d[p->a], *du = b->d[p->u], *dv = b->d[p->v];
+    aset_real ma = p->middle_a, mu = p->middle_u, mv = p->middle_v, height = p->height, slope_u = p->slope_u, slope_v = p->slope_v;
+    aset_real low_u = p->low_u, high_u = p->high_u, low_v = p->low_v, high_v = p->high_v;
+    EACH_OF_PART(k) {
+        int i = first + k;
         aset_real qa = oa[i] - ma, qu = ou[i] - mu, qv = ov[i] - mv;
         aset_real rate = da[i] - slope_u * du[i] - slope_v * dv[i];
         aset_real t = (height + slope_u * qu + slope_v * qv - qa) / rate;
@@ -121,14 +126,36 @@ static void meet_facet(meetings *restrict m, const draft_beam *restrict b, const
         m->rate[i] = rate;
         m->u[i] = hu + 2;
         m->v[i] = hv + 2;
-        m->met[i] = beside & (t > b->end[i]) & (t < b->t_max[i]) & through[i];
+        met[i] |= -(beside & (t > b->end[i]) & (t < b->t_max[i]) & through[i]) & bit;
     }
 }
 
-/* Those of the rays that are set, first to last; how many. */
-static uint32_t list_set(uint32_t *restrict list, const int32_t *restrict set) {
+static void find_plane(plane *p, meetings *m, const aset_draft *draft, const aset_real middle[3], uint32_t number) {
+    static const unsigned char next[4] = {1, 2, 0, 0};
+    uint64_t record = facet_record(draft, number);
+    uint32_t surface = facet_surface(draft, record), footprint = facet_footprint(draft, record);
+    uint32_t in_u = columns_u(footprint), in_v = columns_v(footprint);
+    p->a = surface_axis(surface);
+    p->u = next[p->a];
+    p->v = next[p->u];
+    p->height = facet_height(draft, record) - 2;
+    p->slope_u = surface_slope_u(surface);
+    p->slope_v = surface_slope_v(surface);
+    p->middle_a = middle[p->a];
+    p->middle_u = middle[p->u];
+    p->middle_v = middle[p->v];
+    p->low_u = span_low[in_u];
+    p->high_u = span_high[in_u];
+    p->low_v = span_low[in_v];
+    p->high_v = span_high[in_v];
+    m->footprint = (uint16_t)footprint;
+    m->down = surface_down(surface);
+}
+
+/* Those of a part's rays that are set, first to last; how many. */
+static uint32_t list_set(uint32_t *restrict list, const int32_t *restrict set, int first) {
     uint32_t n = 0;
-    EACH(i) {
+    for (int i = first; i < first + PART; i++) {
         list[n] = (uint32_t)i;
         n += (uint32_t)(set[i] != 0);
     }
@@ -159,26 +186,35 @@ bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dens
     int32_t met[DRAFT_BEAM] = {0};
     const aset_real low[3] = {(aset_real)(int32_t)(at[0] * 16 + k % 4 * 4), (aset_real)(int32_t)(at[1] * 16 + k / 4 % 4 * 4),
                               (aset_real)(int32_t)(at[2] * 16 + k / 16 * 4)};
-    int32_t n_through = come_through(through, beam, low);
+    int32_t n_through[PARTS], n_all = 0;
+    for (int part = 0; part < PARTS; part++) {
+        n_through[part] = come_through(through, beam, low, part * PART);
+        n_all += n_through[part];
+    }
     /* A hostile draft may lie where the band's draft lay, with its check sum: no voxel that it does not have. */
-    if (n_through == 0 || dense >= beam->draft->n_blocks || (draft_marks(beam->draft, dense) >> k & 1u) == 0) {
+    if (n_all == 0 || dense >= beam->draft->n_blocks || (draft_marks(beam->draft, dense) >> k & 1u) == 0) {
         return false;
     }
     const aset_real middle[3] = {low[0] + 2, low[1] + 2, low[2] + 2};
-    beam->n_visited += (uint64_t)n_through;
+    beam->n_visited += (uint64_t)n_all;
     draft_find_facets(beam->draft, dense, bits_count(draft_marks(beam->draft, dense) & ((UINT64_C(1) << k) - 1)), &first, &end);
     for (uint32_t f = 0; f < end - first; f++) {
-        meet_facet(&m[f], beam, through, middle, first + f);
-        EACH(i) {
-            met[i] |= m[f].met[i] << f;
+        plane p;
+        find_plane(&p, &m[f], beam->draft, middle, first + f);
+        for (int part = 0; part < PARTS; part++) {
+            if (n_through[part] > 0) {
+                meet_facet(&m[f], met, (int32_t)(1u << f), beam, through, &p, part * PART);
+            }
         }
     }
-    uint32_t n = list_set(list, met);
-    for (uint32_t j = 0; j < n; j++) {
-        uint32_t i = list[j];
-        beam->n_left -= lay(&beam->cover[i], m, i, (uint32_t)met[i], first);
-        beam->left[i] = beam->cover[i].left;
-        beam->end[i] = draft_cover_end(&beam->cover[i]);
+    for (int part = 0; part < PARTS; part++) {
+        uint32_t n = n_through[part] > 0 ? list_set(list, met, part * PART) : 0;
+        for (uint32_t j = 0; j < n; j++) {
+            uint32_t i = list[j];
+            beam->n_left -= lay(&beam->cover[i], m, i, (uint32_t)met[i], first);
+            beam->left[i] = beam->cover[i].left;
+            beam->end[i] = draft_cover_end(&beam->cover[i]);
+        }
     }
     return beam->n_left == 0;
 }

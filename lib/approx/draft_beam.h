@@ -6,9 +6,6 @@
 
 #if ASET_WITH_DRAFTS
 
-/* Rays of a beam: as many as wide registers hold, a voxel's width in a usual picture. */
-#define DRAFT_BEAM 8
-
 /* Rays side by side in every array, so that a compiler can do several at a time. In columns, as in draft_ray.c. */
 typedef struct draft_beam {
     const aset_draft *draft;

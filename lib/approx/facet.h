@@ -162,14 +162,20 @@ static inline facet facet_read(const aset_draft *draft, uint32_t number) {
     return f;
 }
 
-/* The unit normal in the scene's lengths, on the side that the facet faces. */
-static inline aset_vec3 facet_normal(const aset_draft *draft, const facet *f) {
+/* A normal in the scene's lengths, of any length but 0, on the side that the facet faces. */
+static inline aset_vec3 facet_faces(const aset_draft *draft, const facet *f) {
+    static const unsigned char next[4] = {1, 2, 0, 0};
     aset_real n[3], towards = f->down ? R(-1) : R(1);
-    int u = (f->axis + 1) % 3, v = (f->axis + 2) % 3;
+    int u = next[f->axis], v = next[u];
     n[f->axis] = towards * draft->per_size[f->axis];
     n[u] = -towards * f->slope_u * draft->per_size[u];
     n[v] = -towards * f->slope_v * draft->per_size[v];
-    return aset_vec_unit(vec(n[0], n[1], n[2]));
+    return vec(n[0], n[1], n[2]);
+}
+
+/* That of unit length. */
+static inline aset_vec3 facet_normal(const aset_draft *draft, const facet *f) {
+    return aset_vec_unit(facet_faces(draft, f));
 }
 
 static inline bool starts_bit(const uint32_t *starts, uint32_t facet_number) {

@@ -1,17 +1,18 @@
 /*
- * beam.c - rows of a draft's picture in beams of eight pixels: which voxels lie before which pixels, and what is drawn of them.
+ * beam.c - rows of a draft's picture in beams of some pixels: which voxels lie before which pixels, and what is drawn of them.
  *
  *     band of 8 rows    +-+---+------+--      its voxels, nearest first, each with its columns and rows
  *                       | |   |      |
- *     two rows                                those of the band that they meet
+ *     one, two or four rows                   those of the band that they meet
  *     segment           |======|              of 32 columns: those of the rows' that it meets
- *     beam                |==|                of 4 columns: those of the segment's that it meets
+ *     beam                |==|                of 4 columns or more: those of the segment's that it meets
  *
  * The order is one in which every ray from the eye passes what it meets: away from the eye's own voxel on each axis, blocks
  * before voxels. A band that shows more voxels than there is room for is left to single rays.
  */
 #include "approx/draft_beam.h"
 #include "approx/draft_query.h"
+#include "trace/beam_shade.h"
 #include "trace/drawing.h"
 #include "trace/outlook.h"
 
@@ -22,6 +23,8 @@
 #define BEAM_RAYS ((uint32_t)DRAFT_BEAM)
 #define BEAM_ROWS 8u
 #define SEGMENT 32u
+/* Beams whose pixels are put together. */
+#define BEAM_GROUP 4u
 #define NONE UINT32_MAX
 /* Pixels that an outline's edges may err by: a picture's width has 16 bits, and a float 24. */
 #define PAD R(0.02)
@@ -29,8 +32,25 @@
 /* The eye rays of neighbouring pixels, their numbers side by side, and what they meet. */
 typedef struct beam_rays {
     aset_real origins[3][DRAFT_BEAM], directions[3][DRAFT_BEAM];
-    eye_hits hits[DRAFT_BEAM];
+    aset_real ends[DRAFT_BEAM]; /* where they meet an object that the draft keeps; infinity: none */
+    draft_beam met;
 } beam_rays;
+
+/* Beams that are drawn together: their pixels, width by rows, and what these have gathered. */
+typedef struct beam_group {
+    union { /* hits are shaded together only where the draft keeps nothing */
+        query_hit kept[DRAFT_BEAM]; /* what the rays of one beam have met of that */
+#if DRAFT_SHADES_BEAMS
+        beam_shader shader;
+#endif
+    } of;
+    bool shades;
+    uint32_t n_beams, rows;
+    size_t stride;
+    uint32_t width[BEAM_GROUP];
+    unsigned char *at[BEAM_GROUP];
+    gathered pixels[BEAM_GROUP][DRAFT_BEAM];
+} beam_group;
 
 static inline aset_vec3 lane_of(aset_real v[3][DRAFT_BEAM], uint32_t i) {
     return vec(v[0][i], v[1][i], v[2][i]);
@@ -240,7 +260,7 @@ static void make_band(aset_beams *beams, const drawing *d, uint32_t band) {
     beams->overflow = !fill_band(&m);
 }
 
-/* The band's voxels that one or two rows of it meet. False: there were too many for the band. */
+/* The band's voxels that some rows of it meet. False: there were too many for the band. */
 static bool begin_rows(aset_beams *beams, const drawing *d, uint32_t row, uint32_t n_rows) {
     if (beams->band != row / BEAM_ROWS) {
         make_band(beams, d, row / BEAM_ROWS);
@@ -332,33 +352,81 @@ static void make_rays(beam_rays *rays, const drawing *d, uint32_t column, uint32
 }
 
 /* What n rays through the pixels chosen for meet: voxels, and objects that the draft keeps. */
-static void meet(const aset_beams *beams, beam_rays *rays, uint32_t n, const aset_tracer *tracer, aset_statistics *statistics) {
-    draft_beam beam;
-    query_hit kept[BEAM_RAYS];
-    aset_real ends[BEAM_RAYS];
+static void meet(beam_rays *rays, query_hit *kept, const aset_beams *beams, uint32_t n, const aset_tracer *tracer,
+                 aset_statistics *statistics) {
     bool keeps = tracer->draft->stage.counts.objects > 0;
     for (uint32_t i = 0; i < BEAM_RAYS; i++) {
-        ends[i] = REAL_INFINITY;
+        rays->ends[i] = REAL_INFINITY;
         if (keeps && i < n) {
-            ends[i] = aset_draft_query_kept(&kept[i], tracer->draft, lane_of(rays->origins, i), lane_of(rays->directions, i),
-                                            REAL_INFINITY, statistics);
+            rays->ends[i] = aset_draft_query_kept(&kept[i], tracer->draft, lane_of(rays->origins, i), lane_of(rays->directions, i),
+                                                  REAL_INFINITY, statistics);
         }
     }
-    aset_draft_beam_start(&beam, tracer->draft, rays->origins, rays->directions, ends, n);
+    aset_draft_beam_start(&rays->met, tracer->draft, rays->origins, rays->directions, rays->ends, n);
     for (uint32_t i = 0; i < beams->n_chosen; i++) {
         const aset_beam_voxel *v = beams->voxels + beams->chosen[i];
         const uint32_t at[3] = {v->block[0], v->block[1], v->block[2]};
-        if (aset_draft_beam_visit(&beam, at, v->dense, v->in_block)) {
+        if (aset_draft_beam_visit(&rays->met, at, v->dense, v->in_block)) {
             break;
         }
     }
-    statistics->cells_visited += beam.n_visited;
-    statistics->nonempty_visited += beam.n_visited;
+    statistics->cells_visited += rays->met.n_visited;
+    statistics->nonempty_visited += rays->met.n_visited;
     for (uint32_t i = 0; i < n; i++) {
-        statistics->approx_hits += beam.cover[i].n > 0;
-        rays->hits[i].n = aset_draft_query_layers(rays->hits[i].layers, beam.layers[i], beam.cover[i].n,
-                                                  lane_of(rays->origins, i), &kept[i], ends[i] < REAL_INFINITY);
+        statistics->approx_hits += rays->met.cover[i].n > 0;
     }
+}
+
+/* Adds the colours of a beam's rays, one after the other. */
+static void shade_each(gathered *g, const drawing *d, beam_rays *rays, const query_hit *kept, uint32_t n) {
+    for (uint32_t k = 0; k < n; k++) {
+        eye_hits hits;
+        aset_real cover;
+        aset_vec3 origin = lane_of(rays->origins, k), direction = lane_of(rays->directions, k);
+        hits.n = aset_draft_query_layers(hits.layers, rays->met.layers[k], rays->met.cover[k].n, origin, &kept[k],
+                                         rays->ends[k] < REAL_INFINITY);
+        aset_colour c = aset_trace_tree(d->tracer, origin, direction, &hits, d->scratch, d->statistics, &cover);
+        aset_drawing_gather(&g[k], c, cover);
+    }
+}
+
+static void group_start(beam_group *group, const drawing *d, uint32_t rows, size_t stride) {
+    group->n_beams = 0;
+    group->rows = rows;
+    group->stride = stride;
+    group->shades = false;
+#if DRAFT_SHADES_BEAMS
+    group->shades = aset_beam_shader_start(&group->of.shader, d);
+#endif
+    (void)d;
+}
+
+static void group_shade(beam_group *group, const drawing *d, beam_rays *rays, uint32_t n, gathered *into) {
+#if DRAFT_SHADES_BEAMS
+    const beam_sight sight = {&rays->met, rays->origins, rays->directions, n};
+    if (group->shades && aset_beam_shader_add(&group->of.shader, &sight, into)) {
+        return;
+    }
+#endif
+    shade_each(into, d, rays, group->of.kept, n);
+}
+
+/* Puts the pixels of all beams of the group, which is empty then. */
+static void group_finish(beam_group *group, const drawing *d) {
+    size_t bytes = aset_format_bytes(d->picture->format);
+#if DRAFT_SHADES_BEAMS
+    if (group->shades) {
+        aset_beam_shader_finish(&group->of.shader);
+    }
+#endif
+    for (uint32_t i = 0; i < group->n_beams; i++) {
+        for (uint32_t y = 0, k = 0; y < group->rows; y++) {
+            for (uint32_t x = 0; x < group->width[i]; x++, k++) {
+                aset_drawing_put(d, &group->pixels[i][k], group->at[i] + y * group->stride + x * bytes);
+            }
+        }
+    }
+    group->n_beams = 0;
 }
 
 /* n pixels of background: their rays meet nothing. */
@@ -375,44 +443,44 @@ static void draw_background(const drawing *d, uint32_t n, unsigned char *at) {
     d->statistics->primary += (uint64_t)n * d->samples * d->samples;
 }
 
-/* The pixels whose rays go in one beam: of one row or two, width of each. */
-static void draw_beam(const aset_beams *beams, const drawing *d, uint32_t column, uint32_t row, uint32_t width, uint32_t rows,
-                      unsigned char *at, size_t stride) {
+/* The pixels whose rays go in one beam: width of each of the group's rows. */
+static void draw_beam(beam_group *group, const aset_beams *beams, const drawing *d, uint32_t column, uint32_t row, uint32_t width,
+                      unsigned char *at) {
     beam_rays rays;
-    gathered g[BEAM_RAYS];
-    uint32_t n = width * rows;
-    memset(g, 0, sizeof g);
+    uint32_t n = width * group->rows;
+    gathered *pixels = group->pixels[group->n_beams];
+    memset(pixels, 0, n * sizeof *pixels);
+    group->width[group->n_beams] = width;
+    group->at[group->n_beams++] = at;
     for (uint32_t j = 0; j < d->samples; j++) {
         for (uint32_t i = 0; i < d->samples; i++) {
             make_rays(&rays, d, column, row, width, n, i, j);
-            meet(beams, &rays, n, d->tracer, d->statistics);
-            for (uint32_t k = 0; k < n; k++) {
-                aset_real cover;
-                aset_colour c = aset_trace_tree(d->tracer, lane_of(rays.origins, k), lane_of(rays.directions, k), &rays.hits[k],
-                                                d->scratch, d->statistics, &cover);
-                aset_drawing_gather(&g[k], c, cover);
-            }
+            meet(&rays, group->of.kept, beams, n, d->tracer, d->statistics);
+            group_shade(group, d, &rays, n, pixels);
         }
     }
-    size_t bytes = aset_format_bytes(d->picture->format);
-    for (uint32_t y = 0, k = 0; y < rows; y++) {
-        for (uint32_t x = 0; x < width; x++, k++) {
-            aset_drawing_put(d, &g[k], at + y * stride + x * bytes);
-        }
+    if (group->n_beams == BEAM_GROUP) {
+        group_finish(group, d);
     }
 }
 
+static uint32_t rows_together(uint32_t row, uint32_t n_rows) {
+    return row % 4 == 0 && n_rows >= 4 ? 4 : row % 2 == 0 && n_rows >= 2 ? 2 : 1;
+}
+
 /*
- * Beams are four pixels wide and two high where two rows are wanted that lie apart in memory, which fits voxels' outlines best; else
- * eight pixels of one row.
+ * Beams are as square as can be, which fits voxels' outlines best: of four rows or two if so many are wanted that lie apart in memory, or
+ * else of one.
  */
 static uint32_t draw_rows(aset_beams *beams, const drawing *d, uint32_t row, uint32_t n_rows, unsigned char *line, size_t stride) {
     size_t bytes = aset_format_bytes(d->picture->format);
     bool alone = d->tracer->draft->stage.counts.objects == 0; /* nothing is met but voxels */
-    uint32_t rows = n_rows > 1 && row % 2 == 0 && stride >= d->columns * bytes ? 2 : 1, most = BEAM_RAYS / rows;
+    uint32_t rows = stride >= d->columns * bytes ? rows_together(row, n_rows) : 1, most = BEAM_RAYS / rows;
+    beam_group group;
     if (!begin_rows(beams, d, row, rows)) {
         return 0;
     }
+    group_start(&group, d, rows, stride);
     for (uint32_t column = 0, empty; column < d->columns;) {
         for (empty = column; empty < d->columns && !choose(beams, empty, most) && alone;) {
             empty += most;
@@ -424,10 +492,11 @@ static uint32_t draw_rows(aset_beams *beams, const drawing *d, uint32_t row, uin
         column = empty;
         if (column < d->columns) {
             uint32_t width = d->columns - column < most ? d->columns - column : most;
-            draw_beam(beams, d, column, row, width, rows, line + column * bytes, stride);
+            draw_beam(&group, beams, d, column, row, width, line + column * bytes);
             column += width;
         }
     }
+    group_finish(&group, d);
     return rows;
 }
 

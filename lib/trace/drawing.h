@@ -45,7 +45,7 @@ struct aset_beam_calls {
     /* Whether they can draw this picture at all; before its first row. */
     bool (*begin)(aset_beams *beams, const drawing *d);
     /*
-     * Draws one or two of the n_rows rows that are wanted from row on, stride bytes apart; how many. 0: nothing was drawn, the
+     * Draws some of the n_rows rows that are wanted from row on, stride bytes apart; how many. 0: nothing was drawn, the
      * row's rays must be traced one by one.
      */
     uint32_t (*draw_rows)(aset_beams *beams, const drawing *d, uint32_t row, uint32_t n_rows, unsigned char *line, size_t stride);

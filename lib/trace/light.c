@@ -4,10 +4,6 @@
  */
 #include "trace/light.h"
 
-/* Well within the distances whose squares neither overflow nor lose bits. */
-#define NEAR R(1e-10)
-#define FAR R(1e10)
-
 bool aset_light_towards(light_ray *towards, const aset_scene *scene, const aset_light *light, aset_vec3 point) {
     if (light->directional) {
         towards->direction = light->position; /* the scene keeps it in unit length */
@@ -19,14 +15,9 @@ bool aset_light_towards(light_ray *towards, const aset_scene *scene, const aset_
             return false;
         }
         /* aset_vec_unit takes the same root where the square is in range: it need not be drawn twice */
-        towards->direction = distance > NEAR && distance < FAR ? vec_scale(way, 1 / distance) : aset_vec_unit(way);
+        towards->direction = distance > LIGHT_NEAR && distance < LIGHT_FAR ? vec_scale(way, 1 / distance) : aset_vec_unit(way);
         towards->distance = distance;
     }
-    if (light->has_colour) {
-        towards->colour = light->colour;
-    } else {
-        aset_real one = 1 / real_sqrt((aset_real)scene->n_uncoloured);
-        towards->colour.r = towards->colour.g = towards->colour.b = one;
-    }
+    towards->colour = light_colour(scene, light);
     return true;
 }

@@ -91,7 +91,54 @@ static aset_real last_before(const aset_reach *reach, uint32_t light, aset_vec3 
     return (o->parallel ? depth : towards->distance) - map->near[tile_at(map, y) * map->tiles + tile_at(map, x)];
 }
 
+#if DRAFT_SHADES_BEAMS
+
+#define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
+
+/* The same for points side by side, which may be any numbers. In steps, for what depends on branches is no loop for wide registers. */
+static void last_each(aset_real *restrict last, const aset_reach *reach, uint32_t light, const reach_points *restrict p) {
+    const aset_reach_map *map = reach->lights + light;
+    const aset_outlook *o = &map->outlook;
+    aset_vec3 from = o->from, forward = o->forward, across = o->across, down = o->down;
+    aset_real most = OFF_MOST * reach->draft->column, half = (aset_real)(int32_t)map->tiles / 2, end = 2 * half - 1;
+    aset_real depth_counts = o->parallel ? 0 : 1, else_one = 1 - depth_counts, least = o->parallel ? -REAL_MAX : 0;
+    aset_real x[DRAFT_BEAM], y[DRAFT_BEAM], depth[DRAFT_BEAM];
+    int32_t known[DRAFT_BEAM], within[DRAFT_BEAM], column[DRAFT_BEAM], row[DRAFT_BEAM];
+    EACH(i) {
+        aset_real way_x = p->point[0][i] - from.x, way_y = p->point[1][i] - from.y, way_z = p->point[2][i] - from.z;
+        aset_real forth = way_x * forward.x + way_y * forward.y + way_z * forward.z;
+        aset_real per_depth = 1 / (depth_counts * forth + else_one);
+        x[i] = (way_x * across.x + way_y * across.y + way_z * across.z) * per_depth;
+        y[i] = (way_x * down.x + way_y * down.y + way_z * down.z) * per_depth;
+        depth[i] = forth;
+        known[i] = (p->off[i] <= most) & (forth > least);
+    }
+    EACH(i) {
+        aset_real at_x = real_max((x[i] + 1) * half, 0), at_y = real_max((y[i] + 1) * half, 0);
+        within[i] = (x[i] >= -1) & (x[i] <= 1) & (y[i] >= -1) & (y[i] <= 1);
+        x[i] = real_min(at_x, end);
+        y[i] = real_min(at_y, end);
+    }
+    EACH(i) {
+        column[i] = (int32_t)x[i];
+        row[i] = (int32_t)y[i];
+    }
+    for (int i = 0; i < DRAFT_BEAM; i++) {
+        last[i] = REAL_INFINITY;
+        if (map->tiles > 0 && known[i]) { /* beside all voxels: 0 */
+            aset_real start = o->parallel ? depth[i] : p->distance[i];
+            last[i] = within[i] ? start - map->near[(uint32_t)row[i] * map->tiles + (uint32_t)column[i]] : 0;
+        }
+    }
+}
+
+static const struct aset_reach_calls calls = {last_before, last_each};
+
+#else
+
 static const struct aset_reach_calls calls = {last_before};
+
+#endif
 
 aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t tiles, aset_arena *arena) {
     if (reach == NULL || draft == NULL || arena == NULL || tiles < 1 || tiles > ASET_REACH_TILES_MAX) {

@@ -12,10 +12,6 @@
 
 #include <string.h>
 
-static uint32_t tracer_depth(const aset_tracer *tracer) {
-    return tracer->depth > 0 ? tracer->depth : ASET_DEPTH_DEFAULT;
-}
-
 aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena *arena) {
     depth = depth > 0 ? depth : ASET_DEPTH_DEFAULT;
     if (scratch == NULL || arena == NULL || depth > ASET_DEPTH_MAX) {
@@ -82,17 +78,8 @@ static void count_ray(aset_statistics *statistics, aset_kind kind, bool hit) {
     statistics->secondary_hit += kind != ASET_PRIMARY && hit;
 }
 
-static void add_colour(aset_colour *sum, aset_real weight, const aset_colour *colour) {
-    sum->r += weight * colour->r;
-    sum->g += weight * colour->g;
-    sum->b += weight * colour->b;
-}
-
-/* A facet so many clearances behind another one, two columns, mostly is the same surface's: it is taken to lie in the same shadows. */
-#define SAME_SURFACE 7
-
 static bool is_same_surface(const query_hit *before, const query_hit *hit, aset_real clearance) {
-    return hit->object == ASET_NO_OBJECT && hit->t - before->t < SAME_SURFACE * clearance; /* an object comes last */
+    return hit->object == ASET_NO_OBJECT && shade_is_same(before->t, hit->t, clearance); /* an object comes last */
 }
 
 /*
@@ -115,7 +102,7 @@ static aset_real shade_layers(aset_colour *sum, const aset_tracer *tracer, aset_
         aset_colour local = aset_shade_local(tracer, s, depth, statistics);
         known = s->known;
         dark = s->dark;
-        add_colour(sum, weight * layers[i].cover, &local);
+        shade_add(sum, weight * layers[i].cover, &local);
         left -= layers[i].cover;
         if (layers[i].cover > most) {
             most = layers[i].cover;
@@ -154,14 +141,14 @@ aset_colour aset_trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_ve
             shading s;
             aset_shading_make(&s, tracer, layers, direction_of);
             aset_colour local = aset_shade_local(tracer, &s, depth, statistics);
-            add_colour(&sum, weight, &local);
+            shade_add(&sum, weight, &local);
             send_on(scratch, &n, tracer, &s, depth, weight);
             left = 0;
         } else if (n_layers > 0) {
             left = shade_layers(&sum, tracer, direction_of, depth, weight, layers, n_layers, scratch, &n, statistics);
         }
         if (left > 0) {
-            add_colour(&sum, weight * left, &tracer->scene->background);
+            shade_add(&sum, weight * left, &tracer->scene->background);
         }
         *cover += kind == ASET_PRIMARY ? 1 - left : 0;
     }

@@ -4,6 +4,10 @@
 
 #include "trace/query.h"
 
+static inline uint32_t tracer_depth(const aset_tracer *tracer) {
+    return tracer->depth > 0 ? tracer->depth : ASET_DEPTH_DEFAULT;
+}
+
 /* What an eye ray meets, if that is known already. */
 typedef struct eye_hits {
     query_hit layers[QUERY_LAYERS_MAX];

@@ -1,0 +1,330 @@
+/*
+ * beam_shade.c - trace.c's and shade.c's arithmetic, number for number, with layers side by side: they are in the innermost loops, and
+ * no branch is in these, so that compilers use wide registers. What looks things up goes one by one: facets, materials, the voxels of
+ * shadow rays.
+ *
+ *     rays       0      1   2             of a few beams
+ *     layers     0a 0b  1a  2a 2b 2c      in a queue, as many at a time as a beam has rays: point and normal of all;
+ *                                         light by light the shadow rays of all, and what it adds to each
+ *     sums       0      1   2             += the share of each layer
+ */
+#include "trace/beam_shade.h"
+
+#include "approx/draft_shadows.h"
+#include "trace/reach.h"
+#include "trace/shade.h"
+
+#include <string.h>
+
+#if ASET_WITH_DRAFTS && DRAFT_SHADES_BEAMS
+
+#define BEAM_RAYS ((uint32_t)DRAFT_BEAM)
+#define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
+
+static inline aset_vec3 lane_of(aset_real (*v)[DRAFT_BEAM], uint32_t i) {
+    return vec(v[0][i], v[1][i], v[2][i]);
+}
+
+static inline void set_lane(aset_real (*v)[DRAFT_BEAM], uint32_t i, aset_vec3 a) {
+    v[0][i] = a.x;
+    v[1][i] = a.y;
+    v[2][i] = a.z;
+}
+
+/* Lengths of vectors side by side. How many of these are no usual ones. */
+static int32_t lengths(aset_real *restrict length, aset_real (*restrict v)[DRAFT_BEAM]) {
+    aset_real square[DRAFT_BEAM];
+    int32_t unusual = 0;
+    EACH(i) {
+        square[i] = v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i];
+        unusual += !((square[i] > VEC_SQUARE_MIN) & (square[i] < VEC_SQUARE_MAX));
+    }
+    EACH(i) {
+        length[i] = real_sqrt(square[i]);
+    }
+    return unusual;
+}
+
+static void scale_by_inverse(aset_real (*restrict v)[DRAFT_BEAM], const aset_real *restrict length) {
+    EACH(i) {
+        aset_real per_length = 1 / length[i];
+        v[0][i] *= per_length;
+        v[1][i] *= per_length;
+        v[2][i] *= per_length;
+    }
+}
+
+/* aset_query_surface and aset_shading_make, with normals as facet_faces has them. */
+static void place(beam_queue *q) {
+    aset_real length[DRAFT_BEAM], (*n)[DRAFT_BEAM] = q->normal, (*d)[DRAFT_BEAM] = q->direction;
+    if (lengths(length, n) == 0) {
+        scale_by_inverse(n, length);
+    } else {
+        for (uint32_t i = 0; i < q->n; i++) {
+            aset_vec3 unit = aset_vec_unit(lane_of(n, i));
+            set_lane(n, i, vec_largest(unit) > 0 ? unit : vec_scale(lane_of(d, i), -1));
+        }
+    }
+    EACH(i) {
+        aset_real towards = n[0][i] * d[0][i] + n[1][i] * d[1][i] + n[2][i] * d[2][i], side = towards <= 0 ? R(1) : R(-1);
+        aset_real x = q->origin[0][i] + q->t[i] * d[0][i], y = q->origin[1][i] + q->t[i] * d[1][i];
+        aset_real z = q->origin[2][i] + q->t[i] * d[2][i];
+        n[0][i] *= side;
+        n[1][i] *= side;
+        n[2][i] *= side;
+        q->point[0][i] = x;
+        q->point[1][i] = y;
+        q->point[2][i] = z;
+        q->nudge[i] = (real_max(real_abs(x), real_max(real_abs(y), real_abs(z))) + q->t[i]) * SHADE_NUDGE;
+    }
+}
+
+/* A light as the layers have it. */
+typedef struct lighting {
+    aset_real direction[3][DRAFT_BEAM], distance[DRAFT_BEAM], n_dot_l[DRAFT_BEAM]; /* 0: it is the point itself */
+    aset_real start[3][DRAFT_BEAM];                                                /* of its shadow rays */
+} lighting;
+
+/* A point's directions, not yet of unit length. How many of the distances are no usual ones. */
+static int32_t look_at_point(lighting *restrict l, const beam_queue *restrict q, aset_vec3 light) {
+    int32_t unusual = 0;
+    EACH(i) {
+        l->direction[0][i] = light.x - q->point[0][i];
+        l->direction[1][i] = light.y - q->point[1][i];
+        l->direction[2][i] = light.z - q->point[2][i];
+    }
+    (void)lengths(l->distance, l->direction);
+    EACH(i) {
+        unusual += !((l->distance[i] > LIGHT_NEAR) & (l->distance[i] < LIGHT_FAR));
+    }
+    return unusual;
+}
+
+/* aset_light_towards, but for the colour. */
+static void look_towards(lighting *l, const beam_queue *q, const aset_scene *scene, const aset_light *light) {
+    if (!light->directional && look_at_point(l, q, light->position) == 0) {
+        scale_by_inverse(l->direction, l->distance);
+        return;
+    }
+    for (uint32_t i = 0; i < BEAM_RAYS; i++) {
+        light_ray towards = {{0, 0, 0}, 0, {0, 0, 0}}; /* the point may be the light */
+        (void)aset_light_towards(&towards, scene, light, vec(q->point[0][i], q->point[1][i], q->point[2][i]));
+        set_lane(l->direction, i, towards.direction);
+        l->distance[i] = towards.distance;
+    }
+}
+
+static void start_rays(lighting *restrict l, const beam_queue *restrict q, aset_real least) {
+    EACH(i) {
+        aset_real off = real_max(q->nudge[i], least);
+        l->n_dot_l[i] = q->normal[0][i] * l->direction[0][i] + q->normal[1][i] * l->direction[1][i] + q->normal[2][i] * l->direction[2][i];
+        l->start[0][i] = q->point[0][i] + off * q->normal[0][i];
+        l->start[1][i] = q->point[1][i] + off * q->normal[1][i];
+        l->start[2][i] = q->point[2][i] + off * q->normal[2][i];
+    }
+}
+
+/* Which layers' shadow rays must be sent, as far as last says: where the light may shine and its shadow is not known yet. */
+static void ask(draft_shadows *restrict shadows, const lighting *restrict l, const beam_queue *restrict q, uint32_t number, bool known,
+                const aset_real *restrict last) {
+    bool remembers = number < 32;
+    EACH(i) {
+        shadows->t_max[i] = l->distance[i];
+        shadows->t_last[i] = 0;
+    }
+    for (uint32_t i = 0; i < q->n; i++) {
+        known = known && q->same[i] != 0;
+        if (l->n_dot_l[i] > 0 && !known) {
+            shadows->t_last[i] = last[i];
+            known = remembers;
+        }
+    }
+}
+
+/* aset_shade_last of all layers. */
+static void find_last(aset_real *restrict last, const lighting *restrict l, const beam_queue *restrict q, const aset_tracer *tracer,
+                      uint32_t number) {
+    aset_real clearance = aset_query_clearance(tracer);
+    reach_points points;
+    EACH(i) {
+        last[i] = REAL_INFINITY;
+        points.point[0][i] = q->point[0][i];
+        points.point[1][i] = q->point[1][i];
+        points.point[2][i] = q->point[2][i];
+        points.off[i] = real_max(clearance, q->nudge[i]);
+        points.distance[i] = l->distance[i];
+    }
+    if (reach_is_of(tracer, number)) {
+        tracer->reach->calls->last_each(last, tracer->reach, number, &points);
+    }
+}
+
+static bool is_dark(const draft_shadows *shadows, uint32_t i, aset_statistics *statistics) {
+    draft_counts counts;
+    bool blocked = aset_draft_shadows_block(shadows, i, &counts);
+    statistics->cells_visited += counts.cells;
+    statistics->nonempty_visited += counts.nonempty;
+    statistics->approx_hits += blocked;
+    statistics->shadow++;
+    statistics->shadow_hit += blocked;
+    return blocked;
+}
+
+/* Adds what light number `number` gives to the layers. */
+static void add_light(aset_colour *colours, beam_queue *q, const drawing *d, uint32_t number) {
+    const aset_tracer *tracer = d->tracer;
+    const aset_light *light = tracer->scene->lights + number;
+    uint32_t bit = number < 32 ? UINT32_C(1) << number : 0;
+    bool known = (q->known & bit) != 0, dark = (q->dark & bit) != 0;
+    lighting l;
+    draft_shadows shadows;
+    aset_real last[DRAFT_BEAM];
+    look_towards(&l, q, tracer->scene, light);
+    start_rays(&l, q, SHADE_SHADOW_SHARE * aset_query_clearance(tracer));
+    find_last(last, &l, q, tracer, number);
+    ask(&shadows, &l, q, number, known, last);
+    aset_draft_shadows_start(&shadows, tracer->draft, l.start, l.direction);
+    light_ray towards = {{0, 0, 0}, 0, light_colour(tracer->scene, light)};
+    for (uint32_t i = 0; i < q->n; i++) {
+        known = known && q->same[i] != 0;
+        if (!(l.n_dot_l[i] > 0)) {
+            continue;
+        }
+        if (!known) {
+            dark = is_dark(&shadows, i, d->statistics);
+            known = bit != 0;
+        }
+        if (!dark) {
+            towards.direction = lane_of(l.direction, i);
+            shade_add_light(&colours[i], q->material[i], lane_of(q->normal, i), lane_of(q->direction, i), &towards,
+                                 l.n_dot_l[i]);
+        }
+    }
+    q->known = known ? q->known | bit : q->known & ~bit;
+    q->dark = dark ? q->dark | bit : q->dark & ~bit;
+}
+
+/* Shades the layers in the queue, which is empty then. */
+static void shade_queue(beam_queue *q, const drawing *d) {
+    aset_colour colours[DRAFT_BEAM];
+    if (q->n == 0) {
+        return;
+    }
+    place(q);
+    for (uint32_t i = 0; i < q->n; i++) {
+        colours[i] = shade_ambient(q->material[i]);
+    }
+    for (uint32_t i = 0; i < d->tracer->scene->counts.lights; i++) {
+        add_light(colours, q, d, i);
+    }
+    for (uint32_t i = 0; i < q->n; i++) {
+        shade_add(q->sum[i], q->share[i], &colours[i]);
+    }
+    q->n = 0;
+}
+
+static void enter(beam_queue *q, const drawing *d, const beam_sight *sight, uint32_t ray, const draft_layer *layer) {
+    const aset_draft *draft = d->tracer->draft;
+    uint32_t i = q->n++;
+    facet f = facet_read(draft, layer->facet);
+    q->share[i] = layer->cover;
+    q->t[i] = layer->t;
+    set_lane(q->origin, i, lane_of(sight->origins, ray));
+    set_lane(q->direction, i, lane_of(sight->directions, ray));
+    set_lane(q->normal, i, facet_faces(draft, &f));
+    q->texture[i] = f.texture;
+    if (i > 0 && q->texture[i - 1] == f.texture) {
+        q->material[i] = q->material[i - 1];
+    } else {
+        q->own[i] = aset_draft_material(draft, f.texture);
+        q->material[i] = &q->own[i];
+    }
+}
+
+/* Would any of the layers send rays on? Not at depth 1. */
+static bool sends_on(const drawing *d, const beam_sight *sight) {
+    const aset_draft *draft = d->tracer->draft;
+    if (tracer_depth(d->tracer) == 1) {
+        return false;
+    }
+    for (uint32_t i = 0; i < sight->n; i++) {
+        for (uint32_t j = 0; j < sight->met->cover[i].n; j++) {
+            aset_material m = aset_draft_texture(draft, sight->met->layers[i][j].facet);
+#if ASET_WITH_REFRACTION
+            if (m.transmittance > 0) {
+                return true;
+            }
+#endif
+            if (m.specular > 0) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+bool aset_beam_shader_start(beam_shader *shader, const drawing *d) {
+    const aset_tracer *tracer = d->tracer;
+    if (tracer->spd_rules || tracer->draft->stage.counts.objects > 0 || !aset_policy_approximate(tracer, ASET_SHADOW, 0)) {
+        return false;
+    }
+    shader->d = d;
+    shader->n_beams = 0;
+    memset(&shader->queue, 0, sizeof shader->queue);
+    EACH(i) { /* layers that are not entered are usual, too */
+        shader->queue.normal[0][i] = 1;
+    }
+    return true;
+}
+
+bool aset_beam_shader_add(beam_shader *shader, const beam_sight *sight, gathered *into) {
+    const drawing *d = shader->d;
+    beam_queue *q = &shader->queue;
+    aset_real clearance = aset_query_clearance(d->tracer);
+    if (sends_on(d, sight)) {
+        return false;
+    }
+    uint32_t beam = shader->n_beams++;
+    shader->into[beam] = into;
+    shader->n_rays[beam] = sight->n;
+    for (uint32_t i = 0; i < sight->n; i++) {
+        const draft_layer *layers = sight->met->layers[i];
+        uint32_t n = sight->met->cover[i].n;
+        aset_colour *sum = &shader->sum[beam][i];
+        aset_real left = 1;
+        sum->r = sum->g = sum->b = 0;
+        for (uint32_t j = 0; j < n; j++) {
+            q->sum[q->n] = sum;
+            q->same[q->n] = j > 0 && shade_is_same(layers[j - 1].t, layers[j].t, clearance);
+            enter(q, d, sight, i, layers + j);
+            left -= layers[j].cover;
+            if (q->n == DRAFT_BEAM) {
+                shade_queue(q, d);
+            }
+        }
+        shader->left[beam][i] = left > 0 ? left : 0;
+        d->statistics->primary_hit += n > 0;
+    }
+    d->statistics->primary += sight->n;
+    if (shader->n_beams == BEAM_SHADER_BEAMS) {
+        aset_beam_shader_finish(shader);
+    }
+    return true;
+}
+
+void aset_beam_shader_finish(beam_shader *shader) {
+    const aset_colour *background = &shader->d->tracer->scene->background;
+    shade_queue(&shader->queue, shader->d);
+    for (uint32_t beam = 0; beam < shader->n_beams; beam++) {
+        for (uint32_t i = 0; i < shader->n_rays[beam]; i++) {
+            aset_real left = shader->left[beam][i];
+            if (left > 0) {
+                shade_add(&shader->sum[beam][i], left, background);
+            }
+            aset_drawing_gather(&shader->into[beam][i], shader->sum[beam][i], 1 - left);
+        }
+    }
+    shader->n_beams = 0;
+}
+
+#endif
