@@ -5,7 +5,7 @@
 
 #if ASET_WITH_DRAFTS
 
-#include "approx/draft_ray.h"
+#include "approx/draft_shadows.h"
 
 #define ROOM ((size_t)4 << 20)
 enum { SIDE = 40 };
@@ -79,13 +79,13 @@ static aset_status draw(unsigned char *pixels, uint32_t side, const aset_tracer 
     return aset_render_rows(tracer, view, &picture, 0, side, &scratch, statistics);
 }
 
-/* How a picture is drawn: with beams of so many voxels and a reach of so many tiles, or without (0). */
+/* How a picture is drawn: with beams of so many voxels and a reach of so many tiles, or without (0); so many rows at once, 0: all. */
 typedef struct aids {
     uint32_t voxels, tiles;
 } aids;
 
 static aset_status draw_with(unsigned char *pixels, uint32_t side, aset_tracer tracer, const aset_view *view, aids with,
-                             bool row_by_row, aset_statistics *statistics) {
+                             uint32_t at_once, aset_statistics *statistics) {
     guarded memory = guarded_open((size_t)1 << 20);
     aset_arena arena;
     aset_scratch scratch;
@@ -113,9 +113,10 @@ static aset_status draw_with(unsigned char *pixels, uint32_t side, aset_tracer t
         assert_int_equal(arena.used - before, ASET_BYTES_REACH(with.tiles, tracer.draft->stage.counts.lights));
         tracer.reach = &reach;
     }
-    for (uint32_t row = 0; row < rows && status == ASET_OK; row += row_by_row ? 1 : rows) {
+    at_once = at_once > 0 ? at_once : rows;
+    for (uint32_t row = 0; row < rows && status == ASET_OK; row += at_once) {
         picture.pixels = pixels + row * picture.stride;
-        status = aset_render_rows(&tracer, view, &picture, row, row_by_row ? 1 : rows, &scratch, statistics);
+        status = aset_render_rows(&tracer, view, &picture, row, rows - row < at_once ? rows - row : at_once, &scratch, statistics);
     }
     guarded_close(&memory);
     return status;
@@ -573,6 +574,66 @@ static void test_draft__shadow_rays_ignore_the_voxel_that_they_start_in(void **s
     model_free(&m);
 }
 
+#if DRAFT_SHADES_BEAMS
+
+/* Origins on slices, between them, anywhere, beside the box; directions that cross slices at once, along axes, any. */
+static void any_shadow_ray(aset_vec3 *origin, aset_vec3 *direction, random_state *r, const aset_draft *draft) {
+    aset_real o[3], d[3];
+    uint32_t kind = (uint32_t)(random_next(r) % 4);
+    for (int a = 0; a < 3; a++) {
+        double at = random_between(r, -0.2, 1.2) * 4 * draft->n[a];
+        at = kind == 0 ? 4 * floor(at / 4) : kind == 1 ? 4 * floor(at / 4) + 2 : at;
+        o[a] = draft->low[a] + draft->size[a] * (aset_real)at;
+        d[a] = draft->size[a] * (aset_real)((int)(random_next(r) % 3) - 1);
+    }
+    *origin = vec(o[0], o[1], o[2]);
+    *direction = random_next(r) % 2 == 0 ? random_direction(r) : aset_vec_unit(vec(d[0], d[1], d[2]));
+    *direction = vec_largest(*direction) > 0 ? *direction : vec(0, -1, 0);
+}
+
+static void test_draft__shadow_rays_side_by_side(void **state) {
+    (void)state;
+    uint64_t blocked = 0, cells = 0, together = 0;
+    for (uint64_t i = 0; i < 600; i++) {
+        static drawn d;
+        random_state r = random_start(seed_of(1300 + i));
+        model m;
+        if (i % 100 == 0) {
+            static const uint32_t n[] = {16, 1, 7, 32, 64, 5};
+            model_of(&m, &r, 40, false);
+            bake(&d, &m, n[i / 100], n[(i / 100 + 1) % 6], n[(i / 100 + 2) % 6], true);
+            model_free(&m);
+        }
+        draft_shadows s;
+        aset_vec3 origins[DRAFT_BEAM], directions[DRAFT_BEAM];
+        aset_real o[3][DRAFT_BEAM], u[3][DRAFT_BEAM], t_last[DRAFT_BEAM];
+        for (uint32_t k = 0; k < DRAFT_BEAM; k++) {
+            any_shadow_ray(&origins[k], &directions[k], &r, &d.draft);
+            o[0][k] = origins[k].x, o[1][k] = origins[k].y, o[2][k] = origins[k].z;
+            u[0][k] = directions[k].x, u[1][k] = directions[k].y, u[2][k] = directions[k].z;
+            s.t_max[k] = k % 3 == 0 ? (aset_real)random_between(&r, 0, 12) : REAL_INFINITY;
+            s.t_last[k] = t_last[k] = k % 5 == 0 ? (aset_real)random_between(&r, -1, 8) : REAL_INFINITY;
+        }
+        aset_draft_shadows_start(&s, &d.draft, o, u);
+        for (uint32_t k = 0; k < DRAFT_BEAM; k++) {
+            draft_counts alone, beside;
+            bool a = aset_draft_blocks(&d.draft, DRAFT_PLANE, origins[k], directions[k], s.t_max[k], t_last[k], &alone);
+            bool b = aset_draft_shadows_block(&s, k, &beside);
+            check(a == b && alone.nonempty == beside.nonempty, SEED ": ray %u: %d %d, %" PRIu64 " %" PRIu64 " voxels", r.seed, k, a, b,
+                  alone.nonempty, beside.nonempty);
+            blocked += a;
+            cells += alone.cells;
+            together += beside.cells;
+        }
+        if (i % 100 == 99) {
+            drawn_close(&d);
+        }
+    }
+    check(blocked > 500 && together <= cells, "%" PRIu64 " blocked, %" PRIu64 " %" PRIu64 " cells", blocked, cells, together);
+}
+
+#endif
+
 static void test_draft__odd_rays(void **state) {
     (void)state;
     random_state r = random_start(seed_of(340));
@@ -663,7 +724,7 @@ static void test_draft__zeros_of_either_sign(void **state) {
         view.at = vec(zeros[k & 1], 0, 0);
         view.up = vec(zeros[k & 1], zeros[k & 1], 1);
         view.height = 10;
-        assert_int_equal(draw_with(pixels[k], SIDE, tracer, &view, (aids){k < 2 ? 0 : 4000, 0}, false, &counts[k]), ASET_OK);
+        assert_int_equal(draw_with(pixels[k], SIDE, tracer, &view, (aids){k < 2 ? 0 : 4000, 0}, 0, &counts[k]), ASET_OK);
         check(memcmp(pixels[0], pixels[k], sizeof pixels[0]) == 0 && counts[k].shadow_hit == counts[0].shadow_hit, "picture %d", k);
     }
     check(counts[0].shadow_hit > 50, "%" PRIu64 " shadow rays are stopped", counts[0].shadow_hit);
@@ -740,6 +801,28 @@ static void test_draft__without_a_space_all_rays_must_be_approximate(void **stat
     model_free(&m);
 }
 
+/* Nothing but the cells that are looked at may depend on beams and reach. */
+static void check_same(const aset_statistics *a, const aset_statistics *b, uint64_t seed) {
+    check(a->primary == b->primary && a->primary_hit == b->primary_hit && a->shadow == b->shadow &&
+              a->shadow_hit == b->shadow_hit && a->reflected == b->reflected && a->refracted == b->refracted &&
+              a->secondary_hit == b->secondary_hit && a->curtailed == b->curtailed && a->tests == b->tests &&
+              a->test_hits == b->test_hits && a->approx_hits == b->approx_hits && a->nonempty_visited == b->nonempty_visited,
+          SEED ": %" PRIu64 " %" PRIu64 " primary, %" PRIu64 " %" PRIu64 " hit, %" PRIu64 " %" PRIu64 " shadow, %" PRIu64
+               " %" PRIu64 " not empty",
+          seed, a->primary, b->primary, a->primary_hit, b->primary_hit, a->shadow, b->shadow, a->nonempty_visited,
+          b->nonempty_visited);
+    check(b->cells_visited <= a->cells_visited, SEED ": %" PRIu64 " > %" PRIu64, seed, b->cells_visited, a->cells_visited);
+}
+
+static void check_aids_change_nothing(const aset_tracer *tracer, const aset_view *view, aids with, uint64_t seed) {
+    static unsigned char plain[SIDE * SIDE * 4], aided[SIDE * SIDE * 4];
+    aset_statistics a = {0}, b = {0};
+    assert_int_equal(draw_with(plain, SIDE, *tracer, view, (aids){0, 0}, 0, &a), ASET_OK);
+    assert_int_equal(draw_with(aided, SIDE, *tracer, view, with, 0, &b), ASET_OK);
+    check(memcmp(plain, aided, sizeof plain) == 0, SEED, seed);
+    check_same(&a, &b, seed);
+}
+
 /* Drafts for some rays beside a space for the others. */
 static void test_draft__beside_a_space(void **state) {
     (void)state;
@@ -767,22 +850,16 @@ static void test_draft__beside_a_space(void **state) {
     assert_int_equal(x.primary, e.primary);
     assert_int_equal(x.primary_hit, e.primary_hit);
     assert_true(x.approx_hits > 0 && e.approx_hits == 0);
+    drawn_close(&d);
+    bake(&d, &m, 24, 24, 24, true);
+    tracer.approx_kinds = ASET_PRIMARY; /* what beams meet is not always lit by the draft */
+    tracer.depth = 1;
+    view = view_from(dvec_real(dvec_make(60, 25, 20)));
+    view.angle_deg = 15;
+    check_aids_change_nothing(&tracer, &view, (aids){4000, 32}, r.seed);
     stage_close(&s);
     drawn_close(&d);
     model_free(&m);
-}
-
-/* Nothing but the cells that are looked at may depend on beams and reach. */
-static void check_same(const aset_statistics *a, const aset_statistics *b, uint64_t seed) {
-    check(a->primary == b->primary && a->primary_hit == b->primary_hit && a->shadow == b->shadow &&
-              a->shadow_hit == b->shadow_hit && a->reflected == b->reflected && a->refracted == b->refracted &&
-              a->secondary_hit == b->secondary_hit && a->curtailed == b->curtailed && a->tests == b->tests &&
-              a->test_hits == b->test_hits && a->approx_hits == b->approx_hits && a->nonempty_visited == b->nonempty_visited,
-          SEED ": %" PRIu64 " %" PRIu64 " primary, %" PRIu64 " %" PRIu64 " hit, %" PRIu64 " %" PRIu64 " shadow, %" PRIu64
-               " %" PRIu64 " not empty",
-          seed, a->primary, b->primary, a->primary_hit, b->primary_hit, a->shadow, b->shadow, a->nonempty_visited,
-          b->nonempty_visited);
-    check(b->cells_visited <= a->cells_visited, SEED ": %" PRIu64 " > %" PRIu64, seed, b->cells_visited, a->cells_visited);
 }
 
 /* Views from everywhere: far, near, among the voxels, along an axis, parallel. */
@@ -806,6 +883,7 @@ static void test_draft__beams_and_reach_change_no_picture(void **state) {
     for (uint64_t i = 0; i < 48; i++) {
         static unsigned char plain[PIXELS], aided[PIXELS];
         static const aids with[] = {{4000, 0}, {0, 32}, {4000, 64}, {60, 7}, {1, 1}};
+        static const uint32_t at_once[COUNT_OF(with)] = {0, 1, 7, 6, 1};
         random_state r = random_start(seed_of(i));
         model m;
         drawn d;
@@ -820,11 +898,11 @@ static void test_draft__beams_and_reach_change_no_picture(void **state) {
         tracer.depth = 1 + (uint32_t)i % 3;
         aset_statistics a = {0};
         memset(plain, 0, sizeof plain);
-        assert_int_equal(draw_with(plain, SIDE, tracer, &view, (aids){0, 0}, false, &a), ASET_OK);
+        assert_int_equal(draw_with(plain, SIDE, tracer, &view, (aids){0, 0}, 0, &a), ASET_OK);
         for (size_t k = 0; k < COUNT_OF(with); k++) {
             aset_statistics b = {0};
             memset(aided, 0, sizeof aided);
-            assert_int_equal(draw_with(aided, SIDE, tracer, &view, with[k], k % 2 == 0, &b), ASET_OK);
+            assert_int_equal(draw_with(aided, SIDE, tracer, &view, with[k], at_once[k], &b), ASET_OK);
             check(memcmp(plain, aided, sizeof plain) == 0, SEED ": %u voxels, %u tiles", r.seed, with[k].voxels, with[k].tiles);
             check_same(&a, &b, r.seed);
             walked += k == 2 ? a.cells_visited : 0;
@@ -834,15 +912,6 @@ static void test_draft__beams_and_reach_change_no_picture(void **state) {
         model_free(&m);
     }
     check(looked_at * 10 < walked * 9, "%" PRIu64 " of %" PRIu64 " cells looked at", looked_at, walked); /* they are of use */
-}
-
-static void check_aids_change_nothing(const aset_tracer *tracer, const aset_view *view, aids with, uint64_t seed) {
-    static unsigned char plain[SIDE * SIDE * 4], aided[SIDE * SIDE * 4];
-    aset_statistics a = {0}, b = {0};
-    assert_int_equal(draw_with(plain, SIDE, *tracer, view, (aids){0, 0}, false, &a), ASET_OK);
-    assert_int_equal(draw_with(aided, SIDE, *tracer, view, with, false, &b), ASET_OK);
-    check(memcmp(plain, aided, sizeof plain) == 0, SEED, seed);
-    check_same(&a, &b, seed);
 }
 
 /* A tracer's scene may have its lights elsewhere than the draft, and more of them. */
@@ -867,6 +936,68 @@ static void test_draft__a_reach_helps_its_own_lights_alone(void **state) {
         tracer.scene = &other;
         aset_view view = any_view(&r, i * 2);
         check_aids_change_nothing(&tracer, &view, (aids){4000, 48}, r.seed);
+        drawn_close(&d);
+        model_free(&m);
+    }
+}
+
+/* Points and radii; point lights. */
+static void scale_model(model *m, aset_real by) {
+    for (uint32_t i = 0; i < m->n_things; i++) {
+        thing *t = m->things + i;
+        for (uint32_t k = 0; k < THING_POINTS_MAX; k++) {
+            t->points[k] = vec_scale(t->points[k], by);
+        }
+        t->radii[0] *= by;
+        t->radii[1] *= by;
+    }
+    for (uint32_t i = 0; i < m->n_lights; i++) {
+        m->lights[i].position = vec_scale(m->lights[i].position, m->lights[i].directional ? 1 : by);
+    }
+}
+
+/*
+ * Lit together or one by one: more lights than a word has bits, some of them among the voxels, and one in the middle of a facet; lengths
+ * whose squares are no numbers to reckon with; nothing that sends rays on, and things that do beside such that do not.
+ */
+static void test_draft__what_beams_meet_is_lit_alike(void **state) {
+    (void)state;
+    static const int exponents[] = {0, 45, -90};
+    for (uint64_t i = 0; i < 18; i++) {
+        random_state r = random_start(seed_of(1200 + i));
+        aset_real scale = (aset_real)ldexp(1, exponents[i % 3]);
+        model m;
+        drawn d;
+        model_of(&m, &r, 40, false);
+        for (uint32_t k = 0; k < m.n_materials; k++) {
+            bool matte = i % 2 == 0 || k > 0;
+            m.materials[k].specular = matte ? 0 : m.materials[k].specular;
+#if ASET_WITH_REFRACTION
+            m.materials[k].transmittance = matte ? 0 : m.materials[k].transmittance;
+#endif
+        }
+        if (i % 4 == 1) { /* among the voxels: no reach */
+            m.lights[1].position = vec(R(0.5), 1, 2);
+        }
+        scale_model(&m, scale);
+        bake(&d, &m, 14, 15, 16, true);
+        aset_tracer tracer = tracer_of(&d.draft);
+        aset_light lights[40]; /* the draft's own, for which the reach was made, and others */
+        aset_scene other = d.draft.stage;
+        memcpy(lights, other.lights, other.counts.lights * sizeof *lights);
+        other.lights = lights;
+        while (i % 6 < 3 && other.counts.lights < COUNT_OF(lights)) {
+            aset_light *light = lights + other.counts.lights++;
+            memset(light, 0, sizeof *light);
+            light->directional = other.counts.lights % 5 == 0;
+            light->position = random_direction(&r);
+            light->position = vec_scale(light->position, light->directional ? 1 : (aset_real)random_between(&r, 0, 12) * scale);
+        }
+        tracer.scene = &other;
+        tracer.depth = 1 + (uint32_t)i / 3 % 2;
+        tracer.samples = 1 + (i == 6);
+        aset_view view = view_from(vec_scale(random_direction(&r), 14 * scale));
+        check_aids_change_nothing(&tracer, &view, (aids){8000, 40}, r.seed);
         drawn_close(&d);
         model_free(&m);
     }
@@ -1303,6 +1434,9 @@ int main(void) {
         cmocka_unit_test(test_draft__layers_are_in_order_and_cover_once),
         cmocka_unit_test(test_draft__any_agrees_with_closest),
         cmocka_unit_test(test_draft__shadow_rays_ignore_the_voxel_that_they_start_in),
+#if DRAFT_SHADES_BEAMS
+        cmocka_unit_test(test_draft__shadow_rays_side_by_side),
+#endif
         cmocka_unit_test(test_draft__odd_rays),
         cmocka_unit_test(test_draft__zeros_of_either_sign),
 #if ASET_WITH_SPHERES
@@ -1312,6 +1446,7 @@ int main(void) {
         cmocka_unit_test(test_draft__beside_a_space),
         cmocka_unit_test(test_draft__beams_and_reach_change_no_picture),
         cmocka_unit_test(test_draft__a_reach_helps_its_own_lights_alone),
+        cmocka_unit_test(test_draft__what_beams_meet_is_lit_alike),
         cmocka_unit_test(test_draft__beams_from_far_away_and_from_a_face),
         cmocka_unit_test(test_draft__beams_follow_the_draft_and_the_view),
         cmocka_unit_test(test_draft__beams_of_a_draft_that_was_exchanged),

@@ -46,7 +46,7 @@ static void axis_start(draft_shadows_axis *restrict x, const aset_draft *draft, 
         x->plane[i] = far_side;
         x->next[i] = ahead;
         x->left[i] = last - k;
-        x->placed[i] &= ((ahead > 0) | (k == last)) & ((behind <= 0) | (k == 0));
+        x->placed[i] &= behind <= 0; /* from - corner may have been rounded up to a whole voxel, but not down from one */
     }
 }
 

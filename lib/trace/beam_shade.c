@@ -61,8 +61,7 @@ static void place(beam_queue *q) {
         scale_by_inverse(n, length);
     } else {
         for (uint32_t i = 0; i < q->n; i++) {
-            aset_vec3 unit = aset_vec_unit(lane_of(n, i));
-            set_lane(n, i, vec_largest(unit) > 0 ? unit : vec_scale(lane_of(d, i), -1));
+            set_lane(n, i, aset_vec_unit(lane_of(n, i)));
         }
     }
     EACH(i) {

@@ -95,15 +95,18 @@ static aset_real last_before(const aset_reach *reach, uint32_t light, aset_vec3 
 
 #define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
 
-/* The same for points side by side, which may be any numbers. In steps, for what depends on branches is no loop for wide registers. */
+/* The same for points side by side, which may be any numbers; last is set where more is known than what it is. In steps, for what depends on branches is no loop for wide registers. */
 static void last_each(aset_real *restrict last, const aset_reach *reach, uint32_t light, const reach_points *restrict p) {
     const aset_reach_map *map = reach->lights + light;
     const aset_outlook *o = &map->outlook;
     aset_vec3 from = o->from, forward = o->forward, across = o->across, down = o->down;
     aset_real most = OFF_MOST * reach->draft->column, half = (aset_real)(int32_t)map->tiles / 2, end = 2 * half - 1;
+    if (map->tiles == 0) {
+        return;
+    }
     aset_real depth_counts = o->parallel ? 0 : 1, else_one = 1 - depth_counts, least = o->parallel ? -REAL_MAX : 0;
     aset_real x[DRAFT_BEAM], y[DRAFT_BEAM], depth[DRAFT_BEAM];
-    int32_t known[DRAFT_BEAM], within[DRAFT_BEAM], column[DRAFT_BEAM], row[DRAFT_BEAM];
+    int32_t known[DRAFT_BEAM], column[DRAFT_BEAM], row[DRAFT_BEAM];
     EACH(i) {
         aset_real way_x = p->point[0][i] - from.x, way_y = p->point[1][i] - from.y, way_z = p->point[2][i] - from.z;
         aset_real forth = way_x * forward.x + way_y * forward.y + way_z * forward.z;
@@ -115,7 +118,6 @@ static void last_each(aset_real *restrict last, const aset_reach *reach, uint32_
     }
     EACH(i) {
         aset_real at_x = real_max((x[i] + 1) * half, 0), at_y = real_max((y[i] + 1) * half, 0);
-        within[i] = (x[i] >= -1) & (x[i] <= 1) & (y[i] >= -1) & (y[i] <= 1);
         x[i] = real_min(at_x, end);
         y[i] = real_min(at_y, end);
     }
@@ -124,10 +126,9 @@ static void last_each(aset_real *restrict last, const aset_reach *reach, uint32_
         row[i] = (int32_t)y[i];
     }
     for (int i = 0; i < DRAFT_BEAM; i++) {
-        last[i] = REAL_INFINITY;
-        if (map->tiles > 0 && known[i]) { /* beside all voxels: 0 */
+        if (known[i]) { /* beside all voxels nothing is ahead, and any t will do */
             aset_real start = o->parallel ? depth[i] : p->distance[i];
-            last[i] = within[i] ? start - map->near[(uint32_t)row[i] * map->tiles + (uint32_t)column[i]] : 0;
+            last[i] = start - map->near[(uint32_t)row[i] * map->tiles + (uint32_t)column[i]];
         }
     }
 }
