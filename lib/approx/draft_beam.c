@@ -46,7 +46,11 @@ void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, aset_real 
 #define CROSSING(b, a, i, plane) (((plane) - (b)->from[a][i]) * (b)->inverse[a][i])
 
 /* Rays are looked at in parts: those of which no ray comes through a voxel are left out. As many as wide registers hold. */
+#if defined(__AVX__)
 #define PART 8
+#else
+#define PART 4
+#endif
 #define PARTS (DRAFT_BEAM / PART)
 #define EACH_OF_PART(k) for (int k = 0; k < PART; k++)
 
