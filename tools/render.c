@@ -238,8 +238,8 @@ static bool parse_request(request *r, int argc, char **argv) {
     return (!tool_is_draft(r->scene) || set_baked(r)) && check_request(r);
 }
 
-/* Rows that a thread draws at a time of a draft, whose beams go through eight rows' voxels. */
-#define DRAFT_ROWS 8u
+/* Rows that a thread draws at a time of a draft, whose beams go through the voxels of as many. */
+#define DRAFT_ROWS 16u
 
 /* What the threads share; the lock guards next, written and failed. */
 typedef struct crew {

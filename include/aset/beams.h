@@ -36,7 +36,8 @@ struct aset_beams {
     aset_beam_voxel *voxels; /* of the band */
     uint16_t *in_row, *in_segment, *chosen;
     uint32_t capacity, n_voxels, n_in_row, n_in_segment, n_chosen;
-    uint32_t band, segment;  /* which these are of; UINT32_MAX: none */
+    uint32_t band, segment;  /* which these are of: first row, number; UINT32_MAX: none */
+    uint32_t rows;           /* of the band */
     bool overflow; /* the band has more voxels than fit */
     /* What the band is of: it serves as long as these stay, call after call. */
     const uint32_t *words;

@@ -1,14 +1,14 @@
 /*
  * beam.c - rows of a draft's picture in beams of some pixels: which voxels lie before which pixels, and what is drawn of them.
  *
- *     band of 8 rows    +-+---+------+--      its voxels, nearest first, each with its columns and rows
+ *     band              +-+---+------+--      of 16 rows or 8: its voxels, nearest first, each with its columns and rows
  *                       | |   |      |
  *     one, two or four rows                   those of the band that they meet
  *     segment           |======|              of 32 columns: those of the rows' that it meets
  *     beam                |==|                of 4 columns or more: those of the segment's that it meets
  *
  * The order is one in which every ray from the eye passes what it meets: away from the eye's own voxel on each axis, blocks
- * before voxels. A band that shows more voxels than there is room for is left to single rays.
+ * before voxels. A band of eight rows that shows more voxels than there is room for is left to single rays.
  */
 #include "approx/draft_beam.h"
 #include "approx/draft_query.h"
@@ -21,7 +21,9 @@
 #if ASET_WITH_DRAFTS
 
 #define BEAM_RAYS ((uint32_t)DRAFT_BEAM)
-#define BEAM_ROWS 8u
+/* Rows of a band. */
+#define BAND_LEAST 8u
+#define BAND_MOST 16u
 #define SEGMENT 32u
 /* Beams whose pixels are put together. */
 #define BEAM_GROUP 4u
@@ -75,7 +77,7 @@ typedef struct band_maker {
     outlook_cells cells;
     aset_outlook outlook;
     order order;
-    uint32_t first_row;
+    uint32_t first_row, rows;
 } band_maker;
 
 /* The eye's voxel on an axis; before all or behind all of them if everything is seen from there. */
@@ -137,9 +139,9 @@ static bool add_voxel(band_maker *m, const uint8_t block[3], uint32_t dense, uin
     const drawing *d = m->picture;
     aset_vec3 middle = outlook_middle(&m->cells, block[0] * 4u + x, block[1] * 4u + y, block[2] * 4u + z);
     outlook_rectangle r = outlook_of(&m->outlook, vec_sub(middle, m->outlook.from), 1);
-    int32_t left, right, top, bottom, first = (int32_t)m->first_row;
+    int32_t left, right, top, bottom, first = (int32_t)m->first_row, rows = (int32_t)m->rows;
     if (!pixels_between(&top, &bottom, r.top, r.bottom, d->picture->height, d->rows, d) || bottom < first ||
-        top >= first + (int32_t)BEAM_ROWS || !pixels_between(&left, &right, r.left, r.right, d->picture->width, d->columns, d)) {
+        top >= first + rows || !pixels_between(&left, &right, r.left, r.right, d->picture->width, d->columns, d)) {
         return true;
     }
     if (b->n_voxels == b->capacity) {
@@ -149,7 +151,7 @@ static bool add_voxel(band_maker *m, const uint8_t block[3], uint32_t dense, uin
     v->left = (uint16_t)left;
     v->right = (uint16_t)right;
     v->top = (uint8_t)(top > first ? top - first : 0);
-    v->bottom = (uint8_t)(bottom - first < (int32_t)BEAM_ROWS ? bottom - first : (int32_t)BEAM_ROWS - 1);
+    v->bottom = (uint8_t)(bottom - first < rows ? bottom - first : rows - 1);
     v->in_block = (uint8_t)(x + 4 * y + 16 * z);
     v->dense = dense;
     v->block[0] = block[0];
@@ -169,7 +171,7 @@ static bool shows_block(const band_maker *m, const uint8_t block[3]) {
     }
     outlook_rectangle r = outlook_of(&m->outlook, way, 4);
     return pixels_between(&top, &bottom, r.top, r.bottom, d->picture->height, d->rows, d) && bottom >= (int32_t)m->first_row &&
-           top < (int32_t)(m->first_row + BEAM_ROWS);
+           top < (int32_t)(m->first_row + m->rows);
 }
 
 static bool add_block(band_maker *m, const uint8_t block[3], uint32_t dense) {
@@ -189,9 +191,12 @@ static bool add_block(band_maker *m, const uint8_t block[3], uint32_t dense) {
     return true;
 }
 
-static bool fill_band(band_maker *m) {
+/* False: no room. */
+static bool fill_band(band_maker *m, uint32_t row) {
     const aset_draft *draft = m->draft;
     const uint32_t *n = draft->blocks;
+    m->first_row = row / m->rows * m->rows;
+    m->beams->n_voxels = 0;
     for (uint32_t z = 0; z < n[2]; z++) {
         for (uint32_t y = 0; y < n[1]; y++) {
             for (uint32_t x = 0; x < n[0]; x++) {
@@ -230,6 +235,8 @@ static bool begin(aset_beams *beams, const drawing *d) {
     aset_outlook outlook;
     aset_outlook_set_camera(&outlook, eye);
     beams->band = beams->segment = NONE;
+    beams->rows = BAND_MOST;
+    beams->n_voxels = beams->capacity; /* nothing is known of any band: begin with a low one */
     beams->words = draft->words;
     beams->check = draft->words[WORD_CHECK];
     beams->eye[0] = eye->from;
@@ -245,27 +252,38 @@ static bool begin(aset_beams *beams, const drawing *d) {
     return beams->can_see;
 }
 
-static void make_band(aset_beams *beams, const drawing *d, uint32_t band) {
+/* Whether there is likely to be room for a high band: there was for the last one's voxels, or would have been. */
+static bool expects_room(const aset_beams *b) {
+    uint32_t would_have = b->rows == BAND_MOST ? b->n_voxels : 2 * b->n_voxels;
+    return !b->overflow && would_have < b->capacity;
+}
+
+/* The band that a row lies in. Whether it is left to single rays, which visit other cells, depends on the low one alone. */
+static void make_band(aset_beams *beams, const drawing *d, uint32_t row) {
     band_maker m;
     m.beams = beams;
     m.picture = d;
     m.draft = d->tracer->draft;
-    m.first_row = band * BEAM_ROWS;
     m.cells = aset_outlook_cells_of(m.draft);
     aset_outlook_set_camera(&m.outlook, &d->eye);
     aset_outlook_set_voxels(&m.outlook, &m.cells, 0);
     make_order(&m);
-    beams->band = band;
-    beams->n_voxels = 0;
-    beams->overflow = !fill_band(&m);
+    m.rows = expects_room(beams) ? BAND_MOST : BAND_LEAST;
+    beams->overflow = !fill_band(&m, row);
+    if (beams->overflow && m.rows == BAND_MOST) {
+        m.rows = BAND_LEAST;
+        beams->overflow = !fill_band(&m, row);
+    }
+    beams->band = m.first_row;
+    beams->rows = m.rows;
 }
 
 /* The band's voxels that some rows of it meet. False: there were too many for the band. */
 static bool begin_rows(aset_beams *beams, const drawing *d, uint32_t row, uint32_t n_rows) {
-    if (beams->band != row / BEAM_ROWS) {
-        make_band(beams, d, row / BEAM_ROWS);
+    if (beams->band == NONE || row - beams->band >= beams->rows) {
+        make_band(beams, d, row);
     }
-    uint32_t in_band = row % BEAM_ROWS, last = in_band + n_rows - 1, n = 0;
+    uint32_t in_band = row - beams->band, last = in_band + n_rows - 1, n = 0;
     for (uint32_t i = 0; i < beams->n_voxels; i++) {
         const aset_beam_voxel *v = beams->voxels + i;
         beams->in_row[n] = (uint16_t)i;
