@@ -615,16 +615,20 @@ static void test_draft__shadow_rays_side_by_side(void **state) {
             s.t_last[k] = t_last[k] = k % 5 == 0 ? (aset_real)random_between(&r, -1, 8) : REAL_INFINITY;
         }
         aset_draft_shadows_start(&s, &d.draft, o, u);
+        uint32_t expected = 0;
         for (uint32_t k = 0; k < DRAFT_BEAM; k++) {
             draft_counts alone, beside;
             bool a = aset_draft_blocks(&d.draft, DRAFT_PLANE, origins[k], directions[k], s.t_max[k], t_last[k], &alone);
-            bool b = aset_draft_shadows_block(&s, k, &beside);
+            bool b = aset_draft_shadows_block(&s, UINT32_C(1) << k, &beside) != 0;
             check(a == b && alone.nonempty == beside.nonempty, SEED ": ray %u: %d %d, %" PRIu64 " %" PRIu64 " voxels", r.seed, k, a, b,
                   alone.nonempty, beside.nonempty);
+            expected |= (uint32_t)a << k;
             blocked += a;
             cells += alone.cells;
             together += beside.cells;
         }
+        draft_counts all;
+        check(aset_draft_shadows_block(&s, 0xffff, &all) == (expected & 0xffff), SEED ": of all %x", r.seed, expected);
         if (i % 100 == 99) {
             drawn_close(&d);
         }

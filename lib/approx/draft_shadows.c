@@ -186,15 +186,18 @@ static bool go_together(way *w, const draft_shadows *s, uint32_t i) {
     return blocked;
 }
 
-bool aset_draft_shadows_block(const draft_shadows *shadows, uint32_t i, draft_counts *counts) {
+uint32_t aset_draft_shadows_block(const draft_shadows *shadows, uint32_t rays, draft_counts *counts) {
+    uint32_t blocked = 0;
     way w;
-    bool blocked;
     w.counts.cells = w.counts.nonempty = 0;
-    if (shadows->axes[0].placed[i] != 0) {
-        blocked = go_together(&w, shadows, i);
-    } else {
-        set_way(&w, shadows, i);
-        blocked = go(&w);
+    for (; rays != 0; rays &= rays - 1) {
+        uint32_t i = bits_lowest(rays);
+        if (shadows->axes[0].placed[i] != 0) {
+            blocked |= (uint32_t)go_together(&w, shadows, i) << i;
+        } else {
+            set_way(&w, shadows, i);
+            blocked |= (uint32_t)go(&w) << i;
+        }
     }
     *counts = w.counts;
     return blocked;

@@ -34,8 +34,8 @@ typedef struct draft_shadows {
 void aset_draft_shadows_start(draft_shadows *restrict shadows, const aset_draft *draft, aset_real (*restrict origins)[DRAFT_BEAM],
                               aset_real (*restrict directions)[DRAFT_BEAM]);
 
-/* What aset_draft_blocks says of the i-th of them. */
-bool aset_draft_shadows_block(const draft_shadows *shadows, uint32_t i, draft_counts *counts);
+/* Those of the rays, each a bit, of which aset_draft_blocks would say that something stops them. counts: of all. */
+uint32_t aset_draft_shadows_block(const draft_shadows *shadows, uint32_t rays, draft_counts *counts);
 
 #endif
 #endif

@@ -123,21 +123,26 @@ static void start_rays(lighting *restrict l, const beam_queue *restrict q, aset_
     }
 }
 
-/* Which layers' shadow rays must be sent, as far as last says: where the light may shine and its shadow is not known yet. */
-static void ask(draft_shadows *restrict shadows, const lighting *restrict l, const beam_queue *restrict q, uint32_t number, bool known,
-                const aset_real *restrict last) {
-    bool remembers = number < 32;
+/*
+ * Which layers' shadow rays must be sent, a bit each: where the light may shine and its shadow is not known yet. known: of the layer
+ * before, and then of the last one.
+ */
+static uint32_t ask(bool *known, draft_shadows *restrict shadows, const lighting *restrict l, const beam_queue *restrict q,
+                    bool remembers, const aset_real *restrict last) {
+    uint32_t asked = 0;
     EACH(i) {
         shadows->t_max[i] = l->distance[i];
         shadows->t_last[i] = 0;
     }
     for (uint32_t i = 0; i < q->n; i++) {
-        known = known && q->same[i] != 0;
-        if (l->n_dot_l[i] > 0 && !known) {
+        *known = *known && q->same[i] != 0;
+        if (l->n_dot_l[i] > 0 && !*known) {
             shadows->t_last[i] = last[i];
-            known = remembers;
+            asked |= UINT32_C(1) << i;
+            *known = remembers;
         }
     }
+    return asked;
 }
 
 /* aset_shade_last of all layers. */
@@ -158,15 +163,16 @@ static void find_last(aset_real *restrict last, const lighting *restrict l, cons
     }
 }
 
-static bool is_dark(const draft_shadows *shadows, uint32_t i, aset_statistics *statistics) {
+/* Those of the rays that are asked for which meet something. */
+static uint32_t send(const draft_shadows *shadows, uint32_t asked, aset_statistics *statistics) {
     draft_counts counts;
-    bool blocked = aset_draft_shadows_block(shadows, i, &counts);
+    uint32_t met = aset_draft_shadows_block(shadows, asked, &counts), n_met = bits_count(met);
     statistics->cells_visited += counts.cells;
     statistics->nonempty_visited += counts.nonempty;
-    statistics->approx_hits += blocked;
-    statistics->shadow++;
-    statistics->shadow_hit += blocked;
-    return blocked;
+    statistics->approx_hits += n_met;
+    statistics->shadow += bits_count(asked);
+    statistics->shadow_hit += n_met;
+    return met;
 }
 
 /* Adds what light number `number` gives to the layers. */
@@ -181,22 +187,15 @@ static void add_light(aset_colour *colours, beam_queue *q, const drawing *d, uin
     look_towards(&l, q, tracer->scene, light);
     start_rays(&l, q, SHADE_SHADOW_SHARE * aset_query_clearance(tracer));
     find_last(last, &l, q, tracer, number);
-    ask(&shadows, &l, q, number, known, last);
+    uint32_t asked = ask(&known, &shadows, &l, q, bit != 0, last);
     aset_draft_shadows_start(&shadows, tracer->draft, l.start, l.direction);
+    uint32_t met = send(&shadows, asked, d->statistics);
     light_ray towards = {{0, 0, 0}, 0, light_colour(tracer->scene, light)};
     for (uint32_t i = 0; i < q->n; i++) {
-        known = known && q->same[i] != 0;
-        if (!(l.n_dot_l[i] > 0)) {
-            continue;
-        }
-        if (!known) {
-            dark = is_dark(&shadows, i, d->statistics);
-            known = bit != 0;
-        }
-        if (!dark) {
+        dark = (asked >> i & 1u) != 0 ? (met >> i & 1u) != 0 : dark;
+        if (l.n_dot_l[i] > 0 && !dark) {
             towards.direction = lane_of(l.direction, i);
-            shade_add_light(&colours[i], q->material[i], lane_of(q->normal, i), lane_of(q->direction, i), &towards,
-                                 l.n_dot_l[i]);
+            shade_add_light(&colours[i], q->material[i], lane_of(q->normal, i), lane_of(q->direction, i), &towards, l.n_dot_l[i]);
         }
     }
     q->known = known ? q->known | bit : q->known & ~bit;
