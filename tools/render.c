@@ -1,7 +1,7 @@
 /*
  * render.c - the command `aset render`: draws a scene row by row, with any number of threads, into a picture file.
  *
- * Threads take the next row each, of a draft the next eight; what is finished waits until all above it is written, so the file is
+ * Threads take the next row each, of a draft the next sixteen; what is finished waits until all above it is written, so the file is
  * written in order and no thread is ever more than one such turn ahead of the slowest. No frame is held.
  */
 #include "prepare.h"

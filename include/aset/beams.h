@@ -2,11 +2,11 @@
  * beams.h - eye rays that go through a draft sixteen at a time (eight in a library compiled with -Os).
  *
  * A draft's marked voxels are projected onto the picture, a band of rows after the other, nearest first; the eye rays of
- * neighbouring pixels, 4 x 4 of them where so many rows are wanted and the picture's stride is not 0, then meet each voxel before
- * them together, pixels without any are background at once, and what has been met is lit together. It is the beam of Heckbert and
- * Hanrahan 1984 with the voxels' order instead of clipping. The picture is the same, bit for bit, and so are all counts but that
- * of the cells which hold nothing or in which shadow rays start, of which fewer are visited. Drawing by beams takes 13.2 kB of stack
- * (gcc 12 on x86-64; 6.3 kB with -Os, 3.4 kB without beams).
+ * neighbouring pixels, 4 x 4 of them (4 x 2) where so many rows are wanted and the picture's stride is not 0, then meet each voxel
+ * before them together, and pixels without any are background at once. What has been met is lit together, unless exact objects answer or
+ * rays are sent on (with -Os: one by one). It is the beam of Heckbert and Hanrahan 1984 with the voxels' order instead of clipping.
+ * The picture is the same, bit for bit, and so are all counts but that of the cells which hold nothing or in which shadow rays start,
+ * of which fewer are visited. Drawing by beams takes 13.2 kB of stack (float, gcc 12 on x86-64; 6.3 kB with -Os, 3.4 kB without beams).
  */
 #ifndef ASET_BEAMS_H
 #define ASET_BEAMS_H

@@ -118,8 +118,8 @@ typedef struct aset_picture {
     size_t stride;
     bool transparent; /* RGBA8888: pixels whose eye rays hit nothing get alpha 0 (in proportion with several samples) */
     /*
-     * Called after each row if not NULL; unless stride is 0 the next row may have been written by then as well. Any answer but 0
-     * stops: ASET_ERR_STOPPED.
+     * Called after each row if not NULL; unless stride is less than a row's bytes, up to three rows below may have been written by
+     * then as well. Any answer but 0 stops: ASET_ERR_STOPPED.
      */
     int (*on_row)(void *context, uint32_t row, const void *pixels);
     void *context;

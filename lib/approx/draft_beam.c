@@ -1,5 +1,5 @@
 /*
- * draft_beam.c - neighbouring rays against one voxel: draft_ray.c's arithmetic, number for number, with the rays in the innermost loops and
+ * draft_beam.c - neighbouring rays against one voxel: draft_walk.h's arithmetic, number for number, with the rays in the innermost loops and
  * no branch in these, so that compilers use wide registers. A facet is so unpacked once for all of them.
  *
  * A ray is in a voxel exactly where the walk would come to it: the walk crosses the slices in order of t, at equal t the lower
@@ -45,7 +45,7 @@ void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, aset_real 
 #define PLANE_IN(b, a, i, low) ((low) - (b)->turned[a][i] * (2 * (low) + 4))
 #define CROSSING(b, a, i, plane) (((plane) - (b)->from[a][i]) * (b)->inverse[a][i])
 
-/* Rays are looked at in parts: those of which no ray comes through a voxel are left out. As many as wide registers hold. */
+/* Rays are looked at in parts: those of which no ray comes through a voxel are left out. As many floats as a wide register holds. */
 #if defined(__AVX__)
 #define PART 8
 #else

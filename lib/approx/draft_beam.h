@@ -6,7 +6,7 @@
 
 #if ASET_WITH_DRAFTS
 
-/* Rays side by side in every array, so that a compiler can do several at a time. In columns, as in draft_ray.c. */
+/* Rays side by side in every array, so that a compiler can do several at a time. In columns, as in draft_walk.h. */
 typedef struct draft_beam {
     const aset_draft *draft;
     aset_real o[3][DRAFT_BEAM], d[3][DRAFT_BEAM];

@@ -69,6 +69,9 @@ static inline draft_axis draft_axis_of(aset_real low, aset_real per_size, aset_r
 #if defined(__OPTIMIZE_SIZE__)
 #define DRAFT_BEAM 8
 #define DRAFT_SHADES_BEAMS 0
+/* Files that were not all compiled so do not link. */
+#define aset_draft_beam_start aset_draft_beam_start_8
+#define aset_draft_beam_visit aset_draft_beam_visit_8
 #else
 #define DRAFT_BEAM 16
 #define DRAFT_SHADES_BEAMS 1
@@ -79,7 +82,7 @@ static inline aset_real draft_far(const aset_draft *draft) {
     return R(64) * draft->column * (aset_real)(int32_t)(4 * (draft->n[0] + draft->n[1] + draft->n[2]));
 }
 
-/* How far from the surface, along its normal, rays start that are to meet the draft; shadow rays a third of that (trace/shade.c). */
+/* How far from the surface, along its normal, rays start that are to meet the draft; shadow rays a third of that (trace/shade.h). */
 aset_real aset_draft_clearance(const aset_draft *draft);
 
 #endif

@@ -6,9 +6,9 @@
  */
 #include "approx/draft_shadows.h"
 
-#include "approx/draft_walk.h"
-
 #if ASET_WITH_DRAFTS && DRAFT_SHADES_BEAMS
+
+#include "approx/draft_walk.h"
 
 #define NO_CELL UINT32_MAX
 #define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
@@ -181,7 +181,11 @@ static bool go_together(way *w, const draft_shadows *s, uint32_t i) {
         }
         blocked = stops_in(w, &l, cell);
     }
-    blocked = blocked || (goes_on && go_on(w, s, i));
+    if (goes_on && !blocked) {
+        (void)look_up(&l, s->draft, s->cells[n][i]); /* where the walk counts one that has been counted so */
+        l.cells--;
+        blocked = go_on(w, s, i);
+    }
     w->counts.cells += l.cells;
     return blocked;
 }

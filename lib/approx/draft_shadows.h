@@ -15,7 +15,7 @@
  */
 typedef struct draft_shadows_axis {
     aset_real from[DRAFT_BEAM], rise[DRAFT_BEAM], inverse[DRAFT_BEAM], plane[DRAFT_BEAM], next[DRAFT_BEAM];
-    int32_t left[DRAFT_BEAM], placed[DRAFT_BEAM]; /* placed: 1 where all that is right */
+    int32_t left[DRAFT_BEAM], placed[DRAFT_BEAM]; /* placed: 1 where all that is right; on x: on all axes */
     int32_t flip[DRAFT_BEAM], base[DRAFT_BEAM];   /* the voxel, not turned, is (left ^ flip) + base; flip is 0 where it is turned */
 } draft_shadows_axis;
 

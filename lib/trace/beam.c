@@ -5,7 +5,7 @@
  *                       | |   |      |
  *     one, two or four rows                   those of the band that they meet
  *     segment           |======|              of 32 columns: those of the rows' that it meets
- *     beam                |==|                of 4 columns or more: those of the segment's that it meets
+ *     beam                |==|                of as many columns as it has: those of the segment's that it meets
  *
  * The order is one in which every ray from the eye passes what it meets: away from the eye's own voxel on each axis, blocks
  * before voxels. A band of eight rows that shows more voxels than there is room for is left to single rays.
@@ -422,8 +422,11 @@ static void group_start(beam_group *group, const drawing *d, uint32_t rows, size
 static void group_shade(beam_group *group, const drawing *d, beam_rays *rays, uint32_t n, gathered *into) {
 #if DRAFT_SHADES_BEAMS
     const beam_sight sight = {&rays->met, rays->origins, rays->directions, n};
-    if (group->shades && aset_beam_shader_add(&group->of.shader, &sight, into)) {
-        return;
+    if (group->shades) {
+        if (aset_beam_shader_add(&group->of.shader, &sight, into)) {
+            return;
+        }
+        aset_beam_shader_finish(&group->of.shader); /* samples add up in their order */
     }
 #endif
     shade_each(into, d, rays, group->of.kept, n);
@@ -483,7 +486,7 @@ static void draw_beam(beam_group *group, const aset_beams *beams, const drawing 
 }
 
 static uint32_t rows_together(uint32_t row, uint32_t n_rows) {
-    return row % 4 == 0 && n_rows >= 4 ? 4 : row % 2 == 0 && n_rows >= 2 ? 2 : 1;
+    return DRAFT_BEAM >= 16 && row % 4 == 0 && n_rows >= 4 ? 4 : row % 2 == 0 && n_rows >= 2 ? 2 : 1;
 }
 
 /*

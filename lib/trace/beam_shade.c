@@ -80,7 +80,7 @@ static void place(beam_queue *q) {
 
 /* A light as the layers have it. */
 typedef struct lighting {
-    aset_real direction[3][DRAFT_BEAM], distance[DRAFT_BEAM], n_dot_l[DRAFT_BEAM]; /* 0: it is the point itself */
+    aset_real direction[3][DRAFT_BEAM], distance[DRAFT_BEAM], n_dot_l[DRAFT_BEAM]; /* 0 if it is the point itself */
     aset_real start[3][DRAFT_BEAM];                                                /* of its shadow rays */
 } lighting;
 
@@ -100,8 +100,18 @@ static int32_t look_at_point(lighting *restrict l, const beam_queue *restrict q,
 }
 
 /* aset_light_towards, but for the colour. */
-static void look_towards(lighting *l, const beam_queue *q, const aset_scene *scene, const aset_light *light) {
-    if (!light->directional && look_at_point(l, q, light->position) == 0) {
+static void look_towards(lighting *restrict l, const beam_queue *restrict q, const aset_scene *scene, const aset_light *light) {
+    if (light->directional) {
+        aset_vec3 direction = light->position;
+        EACH(i) {
+            l->direction[0][i] = direction.x;
+            l->direction[1][i] = direction.y;
+            l->direction[2][i] = direction.z;
+            l->distance[i] = REAL_INFINITY;
+        }
+        return;
+    }
+    if (look_at_point(l, q, light->position) == 0) {
         scale_by_inverse(l->direction, l->distance);
         return;
     }
@@ -145,7 +155,7 @@ static uint32_t ask(bool *known, draft_shadows *restrict shadows, const lighting
     return asked;
 }
 
-/* aset_shade_last of all layers. */
+/* Where on each layer's shadow ray nothing of the draft is left ahead. */
 static void find_last(aset_real *restrict last, const lighting *restrict l, const beam_queue *restrict q, const aset_tracer *tracer,
                       uint32_t number) {
     aset_real clearance = aset_query_clearance(tracer);
@@ -158,7 +168,7 @@ static void find_last(aset_real *restrict last, const lighting *restrict l, cons
         points.off[i] = real_max(clearance, q->nudge[i]);
         points.distance[i] = l->distance[i];
     }
-    if (reach_is_of(tracer, number)) {
+    if (reach_is_of(tracer, number) && tracer->reach->calls->last_each != NULL) {
         tracer->reach->calls->last_each(last, tracer->reach, number, &points);
     }
 }
@@ -253,9 +263,12 @@ static bool sends_on(const drawing *d, const beam_sight *sight) {
                 return true;
             }
 #endif
+#if ASET_WITH_REFLECTION
             if (m.specular > 0) {
                 return true;
             }
+#endif
+            (void)m;
         }
     }
     return false;

@@ -40,7 +40,7 @@ typedef struct beam_sight {
     uint32_t n;
 } beam_sight;
 
-/* Whether a picture's hits may be shaded so at all: where nothing but the draft answers eye rays and their shadow rays. */
+/* Whether a picture's hits may be shaded so at all: where nothing but the draft answers eye rays and their shadow rays, by its own rules. */
 bool aset_beam_shader_start(beam_shader *shader, const drawing *d);
 
 /*

@@ -95,7 +95,7 @@ static aset_real last_before(const aset_reach *reach, uint32_t light, aset_vec3 
 
 #define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
 
-/* The same for points side by side, which may be any numbers; last is set where more is known than what it is. In steps, for what depends on branches is no loop for wide registers. */
+/* The same for points side by side, which may be any numbers. In steps, for what depends on branches is no loop for wide registers. */
 static void last_each(aset_real *restrict last, const aset_reach *reach, uint32_t light, const reach_points *restrict p) {
     const aset_reach_map *map = reach->lights + light;
     const aset_outlook *o = &map->outlook;
@@ -137,7 +137,7 @@ static const struct aset_reach_calls calls = {last_before, last_each};
 
 #else
 
-static const struct aset_reach_calls calls = {last_before};
+static const struct aset_reach_calls calls = {last_before, NULL};
 
 #endif
 

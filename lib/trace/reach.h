@@ -8,12 +8,10 @@
 
 #if ASET_WITH_DRAFTS
 
-#if DRAFT_SHADES_BEAMS
 /* Points side by side, how far off them rays start at most, and the light's distance: infinity for a directional one. */
 typedef struct reach_points {
     aset_real point[3][DRAFT_BEAM], off[DRAFT_BEAM], distance[DRAFT_BEAM];
 } reach_points;
-#endif
 
 /* Through a pointer, so that who names no reach links none. */
 struct aset_reach_calls {
@@ -22,9 +20,8 @@ struct aset_reach_calls {
      * as from the point itself.
      */
     aset_real (*last)(const aset_reach *reach, uint32_t light, aset_vec3 point, aset_real off, const light_ray *towards);
-#if DRAFT_SHADES_BEAMS
+    /* For points side by side; last is set where more is known than what it is. NULL without DRAFT_SHADES_BEAMS. */
     void (*last_each)(aset_real *restrict last, const aset_reach *reach, uint32_t light, const reach_points *restrict points);
-#endif
 };
 
 /* Was the tracer's reach made for this very light? Its scene may have other ones than the draft's stage. */
