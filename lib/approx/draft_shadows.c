@@ -51,7 +51,7 @@ static void axis_start(draft_shadows_axis *restrict x, const aset_draft *draft, 
 }
 
 /* lanes_step for all rays. How many are not at their ends. */
-static int32_t step(draft_shadows *restrict s, uint32_t *restrict cells) {
+static int32_t step_all(draft_shadows *restrict s, uint32_t *restrict cells) {
     draft_shadows_axis *x = &s->axes[0], *y = &s->axes[1], *z = &s->axes[2];
     int32_t n = 0;
     EACH(i) {
@@ -96,7 +96,7 @@ void aset_draft_shadows_start(draft_shadows *restrict shadows, const aset_draft 
     }
     shadows->n_steps = 0;
     for (; n > 0 && shadows->n_steps < DRAFT_STEPS; shadows->n_steps++) {
-        n = step(shadows, shadows->cells[shadows->n_steps]);
+        n = step_all(shadows, shadows->cells[shadows->n_steps]);
     }
 }
 
