@@ -326,6 +326,27 @@ static void arena_open(aset_arena *arena, source *s) {
     need(aset_arena_init(arena, s->block, ARENA_BYTES) == ASET_OK, s->text, "arena", "not an arena");
 }
 
+/* At depth 1, ray by ray and then by beams and with a reach: what lies side by side is rounded as what is alone. */
+static void draw_by_beams(const source *s, const job *j, aset_tracer tracer, aset_picture picture, uint32_t side, aset_arena *arena) {
+    static unsigned char pixels[2][(SIDE + 1) * (SIDE + 1) * 4];
+    aset_scratch scratch;
+    aset_beams beams;
+    aset_reach reach;
+    need(aset_scratch_init(&scratch, 1, arena) == ASET_OK && aset_beams_init(&beams, 4096, arena) == ASET_OK &&
+             aset_reach_init(&reach, tracer.draft, 32, arena) == ASET_OK,
+         s->text, j->name, "no beams");
+    tracer.depth = 1;
+    memset(pixels, fill, sizeof pixels);
+    for (int by_beams = 0; by_beams < 2; by_beams++) {
+        picture.pixels = pixels[by_beams];
+        scratch.beams = by_beams != 0 ? &beams : NULL;
+        tracer.reach = by_beams != 0 ? &reach : NULL;
+        aset_status status = aset_render_rows(&tracer, &s->scene.view, &picture, 0, side, &scratch, NULL);
+        need(status == ASET_OK, s->text, j->name, aset_status_text(status));
+    }
+    need(memcmp(pixels[0], pixels[1], sizeof pixels[0]) == 0, s->text, j->name, "another picture by beams");
+}
+
 static void draw(source *s, const job *j) {
     static unsigned char pixels[(SIDE + 1) * (SIDE + 1) * 4];
     const uint32_t side = j->spd ? SIDE + 1 : SIDE;
@@ -364,8 +385,11 @@ static void draw(source *s, const job *j) {
     need(status == ASET_OK, s->text, j->name, aset_status_text(status));
     hash_pixels(&values, j, pixels, (size_t)side * side);
     hash_statistics(&counts, &statistics);
-    s->dirty = arena.peak;
     say(s->text, j->name, values, counts, arena.peak);
+    if (j->draft) {
+        draw_by_beams(s, j, tracer, picture, side, &arena);
+    }
+    s->dirty = arena.peak;
 }
 
 /* --- single rays: every bit of hits and of unclamped colours --- */
