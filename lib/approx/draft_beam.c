@@ -9,13 +9,11 @@
 
 #if ASET_WITH_DRAFTS
 
-#define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
-
 static void set_axis(draft_beam *restrict b, const aset_draft *draft, int a, const aset_real *restrict origins,
                      const aset_real *restrict directions) {
     aset_real *o = b->o[a], *d = b->d[a], *turned = b->turned[a], *from = b->from[a], *inverse = b->inverse[a];
     aset_real low = draft->low[a], per_size = draft->per_size[a];
-    EACH(i) {
+    EACH_RAY(i) {
         draft_axis x = draft_axis_of(low, per_size, origins[i], directions[i]);
         o[i] = x.o;
         d[i] = x.d;
@@ -33,7 +31,7 @@ void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, aset_real 
     for (int a = 0; a < 3; a++) {
         set_axis(beam, draft, a, origins[a], directions[a]);
     }
-    EACH(i) {
+    EACH_RAY(i) {
         beam->t_max[i] = t_max[i];
         beam->end[i] = 0;
         beam->left[i] = (uint32_t)i < n ? R(1) : R(0);

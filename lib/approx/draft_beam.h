@@ -3,6 +3,7 @@
 #define ASET_APPROX_DRAFT_BEAM_H
 
 #include "approx/draft_cover.h"
+#include "approx/draft_lanes.h"
 
 #if ASET_WITH_DRAFTS
 

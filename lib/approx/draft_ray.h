@@ -62,21 +62,6 @@ static inline draft_axis draft_axis_of(aset_real low, aset_real per_size, aset_r
     return x;
 }
 
-/*
- * Rays of a beam: half a voxel's outline in a usual picture. Whether what they meet is lit together, too. Programs that are compiled for
- * size have narrow beams, and hits lit one by one.
- */
-#if defined(__OPTIMIZE_SIZE__)
-#define DRAFT_BEAM 8
-#define DRAFT_SHADES_BEAMS 0
-/* Files that were not all compiled so do not link. */
-#define aset_draft_beam_start aset_draft_beam_start_8
-#define aset_draft_beam_visit aset_draft_beam_visit_8
-#else
-#define DRAFT_BEAM 16
-#define DRAFT_SHADES_BEAMS 1
-#endif
-
 /* From so far on the rounding of o + t d would be seen: such rays are brought near first. */
 static inline aset_real draft_far(const aset_draft *draft) {
     return R(64) * draft->column * (aset_real)(int32_t)(4 * (draft->n[0] + draft->n[1] + draft->n[2]));

@@ -11,7 +11,6 @@
 #include "approx/draft_walk.h"
 
 #define NO_CELL UINT32_MAX
-#define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
 
 /* A voxel's bit in its block's marks. */
 static inline unsigned cell_bit(uint32_t cell) {
@@ -20,12 +19,12 @@ static inline unsigned cell_bit(uint32_t cell) {
 
 /* lane_start's arithmetic for rays that begin at t = 0; in steps, for what depends on branches is no loop for wide registers. */
 static void axis_start(draft_shadows_axis *restrict x, const aset_draft *draft, int a, const aset_real *restrict origins,
-                               const aset_real *restrict directions) {
+                       const aset_real *restrict directions) {
     aset_real low = draft->low[a], per_size = draft->per_size[a];
     int32_t last = (int32_t)draft->blocks[a] * 4 - 1;
     aset_real side = (aset_real)(int32_t)draft->n[a] * VOXEL, turned_corner = (aset_real)(-4 * (last + 1)), last_real = (aset_real)last;
     aset_real corner[DRAFT_BEAM], at[DRAFT_BEAM];
-    EACH(i) {
+    EACH_RAY(i) {
         draft_axis ray = draft_axis_of(low, per_size, origins[i], directions[i]);
         x->from[i] = ray.from;
         x->rise[i] = ray.rise;
@@ -35,11 +34,11 @@ static void axis_start(draft_shadows_axis *restrict x, const aset_draft *draft, 
         x->placed[i] = (ray.o >= 0) & (ray.o <= side);
         corner[i] = ray.d < 0 ? turned_corner : 0;
     }
-    EACH(i) {
+    EACH_RAY(i) {
         aset_real k = real_max((x->from[i] - corner[i]) * (1 / VOXEL), 0);
         at[i] = real_min(k, last_real);
     }
-    EACH(i) {
+    EACH_RAY(i) {
         int32_t k = (int32_t)at[i];
         aset_real far_side = corner[i] + (aset_real)(k + 1) * VOXEL, near_side = far_side - VOXEL;
         aset_real ahead = (far_side - x->from[i]) * x->inverse[i], behind = (near_side - x->from[i]) * x->inverse[i];
@@ -54,7 +53,7 @@ static void axis_start(draft_shadows_axis *restrict x, const aset_draft *draft, 
 static int32_t step_all(draft_shadows *restrict s, uint32_t *restrict cells) {
     draft_shadows_axis *x = &s->axes[0], *y = &s->axes[1], *z = &s->axes[2];
     int32_t n = 0;
-    EACH(i) {
+    EACH_RAY(i) {
         aset_real t_x = x->next[i], t_y = y->next[i], t_z = z->next[i];
         int32_t on_x = (t_x <= t_y) & (t_x <= t_z), on_y = (t_y < t_x) & (t_y <= t_z), on_z = 1 - on_x - on_y;
         aset_real t = real_min(t_x, real_min(t_y, t_z));
@@ -87,7 +86,7 @@ void aset_draft_shadows_start(draft_shadows *restrict shadows, const aset_draft 
         axis_start(&shadows->axes[a], draft, a, origins[a], directions[a]);
     }
     int32_t n = 0;
-    EACH(i) {
+    EACH_RAY(i) {
         shadows->t_last[i] = real_min(shadows->t_last[i], shadows->t_max[i]);
         int32_t placed = shadows->axes[0].placed[i] & shadows->axes[1].placed[i] & shadows->axes[2].placed[i];
         shadows->axes[0].placed[i] = placed;

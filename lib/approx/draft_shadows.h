@@ -2,6 +2,7 @@
 #ifndef ASET_APPROX_DRAFT_SHADOWS_H
 #define ASET_APPROX_DRAFT_SHADOWS_H
 
+#include "approx/draft_lanes.h"
 #include "approx/draft_ray.h"
 
 #if ASET_WITH_DRAFTS && DRAFT_SHADES_BEAMS

@@ -54,16 +54,6 @@ typedef struct beam_group {
     gathered pixels[BEAM_GROUP][DRAFT_BEAM];
 } beam_group;
 
-static inline aset_vec3 lane_of(aset_real v[3][DRAFT_BEAM], uint32_t i) {
-    return vec(v[0][i], v[1][i], v[2][i]);
-}
-
-static inline void set_lane(aset_real v[3][DRAFT_BEAM], uint32_t i, aset_vec3 a) {
-    v[0][i] = a.x;
-    v[1][i] = a.y;
-    v[2][i] = a.z;
-}
-
 typedef struct order {
     uint8_t at[3][128]; /* blocks on each axis, in order */
     uint8_t in_block[3][3][4]; /* voxels of a block: of one before the eye's own on the axis, of that one, of one behind */
@@ -325,28 +315,16 @@ static bool choose(aset_beams *beams, uint32_t column, uint32_t width) {
 /* Directions from a perspective eye, of unit length: aset_camera_ray's arithmetic. False: some are too long or short before. */
 static bool look_through(aset_real (*restrict directions)[DRAFT_BEAM], const camera *restrict eye, const aset_real *restrict x,
                          const aset_real *restrict y) {
-    aset_real square[DRAFT_BEAM], scale[DRAFT_BEAM];
+    aset_real length[DRAFT_BEAM];
     aset_vec3 forward = eye->forward, right = eye->right, down = eye->down;
-    int32_t beyond = 0;
-    for (int i = 0; i < DRAFT_BEAM; i++) {
-        aset_real a = forward.x + (right.x * x[i] + y[i] * down.x), b = forward.y + (right.y * x[i] + y[i] * down.y);
-        aset_real c = forward.z + (right.z * x[i] + y[i] * down.z), sum = a * a + b * b + c * c;
-        directions[0][i] = a;
-        directions[1][i] = b;
-        directions[2][i] = c;
-        square[i] = sum;
-        beyond += !((sum > VEC_SQUARE_MIN) & (sum < VEC_SQUARE_MAX));
+    EACH_RAY(i) {
+        directions[0][i] = forward.x + (right.x * x[i] + y[i] * down.x);
+        directions[1][i] = forward.y + (right.y * x[i] + y[i] * down.y);
+        directions[2][i] = forward.z + (right.z * x[i] + y[i] * down.z);
     }
-    for (int i = 0; i < DRAFT_BEAM; i++) {
-        scale[i] = real_sqrt(square[i]);
-    }
-    for (int i = 0; i < DRAFT_BEAM; i++) {
-        aset_real per_length = 1 / scale[i];
-        directions[0][i] *= per_length;
-        directions[1][i] *= per_length;
-        directions[2][i] *= per_length;
-    }
-    return beyond == 0;
+    bool usual = draft_lane_lengths(length, directions) == 0;
+    draft_lanes_divide(directions, length);
+    return usual;
 }
 
 /* The rays of sample (i, j) of the beam's pixels; those beyond the n that there are repeat the first. */
@@ -363,9 +341,9 @@ static void make_rays(beam_rays *rays, const drawing *d, uint32_t column, uint32
         aset_vec3 origin = d->eye.from, direction;
         if (!known) {
             aset_camera_ray(&d->eye, x[k], y[k], &origin, &direction);
-            set_lane(rays->directions, k, direction);
+            draft_set_lane(rays->directions, k, direction);
         }
-        set_lane(rays->origins, k, origin);
+        draft_set_lane(rays->origins, k, origin);
     }
 }
 
@@ -376,7 +354,7 @@ static void meet(beam_rays *rays, query_hit *kept, const aset_beams *beams, uint
     for (uint32_t i = 0; i < BEAM_RAYS; i++) {
         rays->ends[i] = REAL_INFINITY;
         if (keeps && i < n) {
-            rays->ends[i] = aset_draft_query_kept(&kept[i], tracer->draft, lane_of(rays->origins, i), lane_of(rays->directions, i),
+            rays->ends[i] = aset_draft_query_kept(&kept[i], tracer->draft, draft_lane(rays->origins, i), draft_lane(rays->directions, i),
                                                   REAL_INFINITY, statistics);
         }
     }
@@ -400,7 +378,7 @@ static void shade_each(gathered *g, const drawing *d, beam_rays *rays, const que
     for (uint32_t k = 0; k < n; k++) {
         eye_hits hits;
         aset_real cover;
-        aset_vec3 origin = lane_of(rays->origins, k), direction = lane_of(rays->directions, k);
+        aset_vec3 origin = draft_lane(rays->origins, k), direction = draft_lane(rays->directions, k);
         hits.n = aset_draft_query_layers(hits.layers, rays->met.layers[k], rays->met.cover[k].n, origin, &kept[k],
                                          rays->ends[k] < REAL_INFINITY);
         aset_colour c = aset_trace_tree(d->tracer, origin, direction, &hits, d->scratch, d->statistics, &cover);

@@ -19,52 +19,18 @@
 #if ASET_WITH_DRAFTS && DRAFT_SHADES_BEAMS
 
 #define BEAM_RAYS ((uint32_t)DRAFT_BEAM)
-#define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
-
-static inline aset_vec3 lane_of(aset_real (*v)[DRAFT_BEAM], uint32_t i) {
-    return vec(v[0][i], v[1][i], v[2][i]);
-}
-
-static inline void set_lane(aset_real (*v)[DRAFT_BEAM], uint32_t i, aset_vec3 a) {
-    v[0][i] = a.x;
-    v[1][i] = a.y;
-    v[2][i] = a.z;
-}
-
-/* Lengths of vectors side by side. How many of these are no usual ones. */
-static int32_t lengths(aset_real *restrict length, aset_real (*restrict v)[DRAFT_BEAM]) {
-    aset_real square[DRAFT_BEAM];
-    int32_t unusual = 0;
-    EACH(i) {
-        square[i] = v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i];
-        unusual += !((square[i] > VEC_SQUARE_MIN) & (square[i] < VEC_SQUARE_MAX));
-    }
-    EACH(i) {
-        length[i] = real_sqrt(square[i]);
-    }
-    return unusual;
-}
-
-static void scale_by_inverse(aset_real (*restrict v)[DRAFT_BEAM], const aset_real *restrict length) {
-    EACH(i) {
-        aset_real per_length = 1 / length[i];
-        v[0][i] *= per_length;
-        v[1][i] *= per_length;
-        v[2][i] *= per_length;
-    }
-}
 
 /* aset_query_surface and aset_shading_make, with normals as facet_faces has them. */
 static void place(beam_queue *q) {
     aset_real length[DRAFT_BEAM], (*n)[DRAFT_BEAM] = q->normal, (*d)[DRAFT_BEAM] = q->direction;
-    if (lengths(length, n) == 0) {
-        scale_by_inverse(n, length);
+    if (draft_lane_lengths(length, n) == 0) {
+        draft_lanes_divide(n, length);
     } else {
         for (uint32_t i = 0; i < q->n; i++) {
-            set_lane(n, i, aset_vec_unit(lane_of(n, i)));
+            draft_set_lane(n, i, aset_vec_unit(draft_lane(n, i)));
         }
     }
-    EACH(i) {
+    EACH_RAY(i) {
         aset_real towards = n[0][i] * d[0][i] + n[1][i] * d[1][i] + n[2][i] * d[2][i], side = towards <= 0 ? R(1) : R(-1);
         aset_real x = q->origin[0][i] + q->t[i] * d[0][i], y = q->origin[1][i] + q->t[i] * d[1][i];
         aset_real z = q->origin[2][i] + q->t[i] * d[2][i];
@@ -87,13 +53,13 @@ typedef struct lighting {
 /* A point's directions, not yet of unit length. How many of the distances are no usual ones. */
 static int32_t look_at_point(lighting *restrict l, const beam_queue *restrict q, aset_vec3 light) {
     int32_t unusual = 0;
-    EACH(i) {
+    EACH_RAY(i) {
         l->direction[0][i] = light.x - q->point[0][i];
         l->direction[1][i] = light.y - q->point[1][i];
         l->direction[2][i] = light.z - q->point[2][i];
     }
-    (void)lengths(l->distance, l->direction);
-    EACH(i) {
+    (void)draft_lane_lengths(l->distance, l->direction);
+    EACH_RAY(i) {
         unusual += !((l->distance[i] > LIGHT_NEAR) & (l->distance[i] < LIGHT_FAR));
     }
     return unusual;
@@ -103,7 +69,7 @@ static int32_t look_at_point(lighting *restrict l, const beam_queue *restrict q,
 static void look_towards(lighting *restrict l, const beam_queue *restrict q, const aset_scene *scene, const aset_light *light) {
     if (light->directional) {
         aset_vec3 direction = light->position;
-        EACH(i) {
+        EACH_RAY(i) {
             l->direction[0][i] = direction.x;
             l->direction[1][i] = direction.y;
             l->direction[2][i] = direction.z;
@@ -112,19 +78,19 @@ static void look_towards(lighting *restrict l, const beam_queue *restrict q, con
         return;
     }
     if (look_at_point(l, q, light->position) == 0) {
-        scale_by_inverse(l->direction, l->distance);
+        draft_lanes_divide(l->direction, l->distance);
         return;
     }
     for (uint32_t i = 0; i < BEAM_RAYS; i++) {
         light_ray towards = {{0, 0, 0}, 0, {0, 0, 0}}; /* the point may be the light */
         (void)aset_light_towards(&towards, scene, light, vec(q->point[0][i], q->point[1][i], q->point[2][i]));
-        set_lane(l->direction, i, towards.direction);
+        draft_set_lane(l->direction, i, towards.direction);
         l->distance[i] = towards.distance;
     }
 }
 
 static void start_rays(lighting *restrict l, const beam_queue *restrict q, aset_real least) {
-    EACH(i) {
+    EACH_RAY(i) {
         aset_real off = real_max(q->nudge[i], least);
         l->n_dot_l[i] = q->normal[0][i] * l->direction[0][i] + q->normal[1][i] * l->direction[1][i] + q->normal[2][i] * l->direction[2][i];
         l->start[0][i] = q->point[0][i] + off * q->normal[0][i];
@@ -140,7 +106,7 @@ static void start_rays(lighting *restrict l, const beam_queue *restrict q, aset_
 static uint32_t ask(bool *known, draft_shadows *restrict shadows, const lighting *restrict l, const beam_queue *restrict q,
                     bool remembers, const aset_real *restrict last) {
     uint32_t asked = 0;
-    EACH(i) {
+    EACH_RAY(i) {
         shadows->t_max[i] = l->distance[i];
         shadows->t_last[i] = 0;
     }
@@ -160,7 +126,7 @@ static void find_last(aset_real *restrict last, const lighting *restrict l, cons
                       uint32_t number) {
     aset_real clearance = aset_query_clearance(tracer);
     reach_points points;
-    EACH(i) {
+    EACH_RAY(i) {
         last[i] = REAL_INFINITY;
         points.point[0][i] = q->point[0][i];
         points.point[1][i] = q->point[1][i];
@@ -204,8 +170,8 @@ static void add_light(aset_colour *colours, beam_queue *q, const drawing *d, uin
     for (uint32_t i = 0; i < q->n; i++) {
         dark = (asked >> i & 1u) != 0 ? (met >> i & 1u) != 0 : dark;
         if (l.n_dot_l[i] > 0 && !dark) {
-            towards.direction = lane_of(l.direction, i);
-            shade_add_light(&colours[i], q->material[i], lane_of(q->normal, i), lane_of(q->direction, i), &towards, l.n_dot_l[i]);
+            towards.direction = draft_lane(l.direction, i);
+            shade_add_light(&colours[i], q->material[i], draft_lane(q->normal, i), draft_lane(q->direction, i), &towards, l.n_dot_l[i]);
         }
     }
     q->known = known ? q->known | bit : q->known & ~bit;
@@ -237,9 +203,9 @@ static void enter(beam_queue *q, const drawing *d, const beam_sight *sight, uint
     facet f = facet_read(draft, layer->facet);
     q->share[i] = layer->cover;
     q->t[i] = layer->t;
-    set_lane(q->origin, i, lane_of(sight->origins, ray));
-    set_lane(q->direction, i, lane_of(sight->directions, ray));
-    set_lane(q->normal, i, facet_faces(draft, &f));
+    draft_set_lane(q->origin, i, draft_lane(sight->origins, ray));
+    draft_set_lane(q->direction, i, draft_lane(sight->directions, ray));
+    draft_set_lane(q->normal, i, facet_faces(draft, &f));
     q->texture[i] = f.texture;
     if (i > 0 && q->texture[i - 1] == f.texture) {
         q->material[i] = q->material[i - 1];
@@ -282,7 +248,7 @@ bool aset_beam_shader_start(beam_shader *shader, const drawing *d) {
     shader->d = d;
     shader->n_beams = 0;
     memset(&shader->queue, 0, sizeof shader->queue);
-    EACH(i) { /* layers that are not entered are usual, too */
+    EACH_RAY(i) { /* layers that are not entered are usual, too */
         shader->queue.normal[0][i] = 1;
     }
     return true;

@@ -93,8 +93,6 @@ static aset_real last_before(const aset_reach *reach, uint32_t light, aset_vec3 
 
 #if DRAFT_SHADES_BEAMS
 
-#define EACH(i) for (int i = 0; i < DRAFT_BEAM; i++)
-
 /* The same for points side by side, which may be any numbers. In steps, for what depends on branches is no loop for wide registers. */
 static void last_each(aset_real *restrict last, const aset_reach *reach, uint32_t light, const reach_points *restrict p) {
     const aset_reach_map *map = reach->lights + light;
@@ -107,7 +105,7 @@ static void last_each(aset_real *restrict last, const aset_reach *reach, uint32_
     aset_real depth_counts = o->parallel ? 0 : 1, else_one = 1 - depth_counts, least = o->parallel ? -REAL_MAX : 0;
     aset_real x[DRAFT_BEAM], y[DRAFT_BEAM], depth[DRAFT_BEAM];
     int32_t known[DRAFT_BEAM], column[DRAFT_BEAM], row[DRAFT_BEAM];
-    EACH(i) {
+    EACH_RAY(i) {
         aset_real way_x = p->point[0][i] - from.x, way_y = p->point[1][i] - from.y, way_z = p->point[2][i] - from.z;
         aset_real forth = way_x * forward.x + way_y * forward.y + way_z * forward.z;
         aset_real per_depth = 1 / (depth_counts * forth + else_one);
@@ -116,16 +114,16 @@ static void last_each(aset_real *restrict last, const aset_reach *reach, uint32_
         depth[i] = forth;
         known[i] = (p->off[i] <= most) & (forth > least);
     }
-    EACH(i) {
+    EACH_RAY(i) {
         aset_real at_x = real_max((x[i] + 1) * half, 0), at_y = real_max((y[i] + 1) * half, 0);
         x[i] = real_min(at_x, end);
         y[i] = real_min(at_y, end);
     }
-    EACH(i) {
+    EACH_RAY(i) {
         column[i] = (int32_t)x[i];
         row[i] = (int32_t)y[i];
     }
-    for (int i = 0; i < DRAFT_BEAM; i++) {
+    EACH_RAY(i) {
         if (known[i]) { /* beside all voxels nothing is ahead, and any t will do */
             aset_real start = o->parallel ? depth[i] : p->distance[i];
             last[i] = start - map->near[(uint32_t)row[i] * map->tiles + (uint32_t)column[i]];

@@ -2,7 +2,8 @@
 #ifndef ASET_TRACE_REACH_H
 #define ASET_TRACE_REACH_H
 
-#include "approx/draft_ray.h"
+#include "approx/draft_lanes.h"
+#include "aset/trace.h"
 #include "trace/light.h"
 #include "trace/outlook.h"
 
