@@ -33,7 +33,7 @@ CORE := $(wildcard lib/base/*.c lib/scene/*.c lib/space/*.c lib/approx/*.c lib/t
 LOAD := $(wildcard lib/load/*.c)
 PROCEDURAL := $(wildcard lib/procedural/*.c)
 TOOL := $(wildcard tools/*.c)
-TESTS := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
+TESTS := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c)) test_draft_narrow
 # planned.c is compiled with a header that a plan writes: tests/plan.sh
 EXAMPLES := $(patsubst examples/%.c,%,$(filter-out examples/planned.c,$(wildcard examples/*.c)))
 objects = $(patsubst %.c,$(BUILD)/$(2)/%.o,$(1))
@@ -111,6 +111,12 @@ $(BUILD)/tests/determinism: tests/determinism.c $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(CPPFLAGS) $(filter-out -Ilib,$(STRICT)) $(CFLAGS) -o $@ $< $(PROCEDURAL_A) $(LOAD_A) $(CORE_A) -lm
+
+# The same tests of what beams do where no processor's wide registers are taken.
+$(BUILD)/tests/test_draft_narrow: tests/test_draft.c lib/approx/draft_beam.c lib/approx/draft_shadows.c $(wildcard tests/support/*) $(ARCHIVES)
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) -DASET_WIDE=0 $(CMOCKA_CFLAGS) -Itests -o $@ $(filter %.c,$^) $(ARCHIVES) $(CMOCKA_LIBS) -lm
 
 # Public headers only, so no -Ilib.
 $(BUILD)/tests/bench: tests/bench.c tests/bench_common.h $(ARCHIVES)

@@ -614,12 +614,11 @@ static void test_draft__shadow_rays_side_by_side(void **state) {
             s.t_max[k] = k % 3 == 0 ? (aset_real)random_between(&r, 0, 12) : REAL_INFINITY;
             s.t_last[k] = t_last[k] = k % 5 == 0 ? (aset_real)random_between(&r, -1, 8) : REAL_INFINITY;
         }
-        aset_draft_shadows_start(&s, &d.draft, o, u);
         uint32_t expected = 0;
         for (uint32_t k = 0; k < DRAFT_BEAM; k++) {
             draft_counts alone, beside;
             bool a = aset_draft_blocks(&d.draft, DRAFT_PLANE, origins[k], directions[k], s.t_max[k], t_last[k], &alone);
-            bool b = aset_draft_shadows_block(&s, UINT32_C(1) << k, &beside) != 0;
+            bool b = aset_draft_shadows_send(&s, &d.draft, o, u, UINT32_C(1) << k, &beside) != 0;
             check(a == b && alone.nonempty == beside.nonempty && beside.cells <= alone.cells,
                   SEED ": ray %u: %d %d, %" PRIu64 " %" PRIu64 " voxels, %" PRIu64 " %" PRIu64 " cells", r.seed, k, a, b,
                   alone.nonempty, beside.nonempty, alone.cells, beside.cells);
@@ -629,7 +628,7 @@ static void test_draft__shadow_rays_side_by_side(void **state) {
             together += beside.cells;
         }
         draft_counts all;
-        check(aset_draft_shadows_block(&s, 0xffff, &all) == (expected & 0xffff), SEED ": of all %x", r.seed, expected);
+        check(aset_draft_shadows_send(&s, &d.draft, o, u, 0xffff, &all) == (expected & 0xffff), SEED ": of all %x", r.seed, expected);
         if (i % 100 == 99) {
             drawn_close(&d);
         }

@@ -43,17 +43,20 @@ void aset_draft_beam_start(draft_beam *beam, const aset_draft *draft, aset_real 
 #define PLANE_IN(b, a, i, low) ((low) - (b)->turned[a][i] * (2 * (low) + 4))
 #define CROSSING(b, a, i, plane) (((plane) - (b)->from[a][i]) * (b)->inverse[a][i])
 
-/* Rays are looked at in parts: those of which no ray comes through a voxel are left out. As many floats as a wide register holds. */
+/*
+ * Rays are looked at in parts: those of which no ray comes through a voxel are left out. As many floats as a wide register holds; a
+ * constant where the work is called.
+ */
+#define WIDE_PART 8
 #if defined(__AVX__)
-#define PART 8
+#define PART WIDE_PART
 #else
 #define PART 4
 #endif
-#define PARTS (DRAFT_BEAM / PART)
-#define EACH_OF_PART(k) for (int k = 0; k < PART; k++)
+#define EACH_OF_PART(k) for (int k = 0; k < part; k++)
 
 /* Which rays of a part, neither done nor ended before, come through the voxel; how many. */
-static int32_t come_through(int32_t *restrict through, const draft_beam *restrict b, const aset_real low[3], int first) {
+DRAFT_WORK int32_t come_through(int32_t *restrict through, const draft_beam *restrict b, const aset_real low[3], int first, int part) {
     aset_real low_x = low[0], low_y = low[1], low_z = low[2];
     int32_t n = 0;
     EACH_OF_PART(k) {
@@ -111,8 +114,8 @@ typedef struct plane {
 } plane;
 
 /* The rays of a part that come through against a facet; those of which it may stop anything get its bit. */
-static void meet_facet(meetings *restrict m, int32_t *restrict met, int32_t bit, const draft_beam *restrict b,
-                       const int32_t *restrict through, const plane *restrict p, int first) {
+DRAFT_WORK void meet_facet(meetings *restrict m, int32_t *restrict met, int32_t bit, const draft_beam *restrict b,
+                           const int32_t *restrict through, const plane *restrict p, int first, int part) {
     const aset_real *oa = b->o[p->a], *ou = b->o[p->u], *ov = b->o[p->v], *da = b->d[p->a], *du = b->d[p->u], *dv = b->d[p->v];
     aset_real ma = p->middle_a, mu = p->middle_u, mv = p->middle_v, height = p->height, slope_u = p->slope_u, slope_v = p->slope_v;
     aset_real low_u = p->low_u, high_u = p->high_u, low_v = p->low_v, high_v = p->high_v;
@@ -132,7 +135,7 @@ static void meet_facet(meetings *restrict m, int32_t *restrict met, int32_t bit,
     }
 }
 
-static void find_plane(plane *p, meetings *m, const aset_draft *draft, const aset_real middle[3], uint32_t number) {
+DRAFT_WORK void find_plane(plane *p, meetings *m, const aset_draft *draft, const aset_real middle[3], uint32_t number) {
     static const unsigned char next[4] = {1, 2, 0, 0};
     uint64_t record = facet_record(draft, number);
     uint32_t surface = facet_surface(draft, record), footprint = facet_footprint(draft, record);
@@ -155,9 +158,9 @@ static void find_plane(plane *p, meetings *m, const aset_draft *draft, const ase
 }
 
 /* Those of a part's rays that are set, first to last; how many. */
-static uint32_t list_set(uint32_t *restrict list, const int32_t *restrict set, int first) {
+DRAFT_WORK uint32_t list_set(uint32_t *restrict list, const int32_t *restrict set, int first, int part) {
     uint32_t n = 0;
-    for (int i = first; i < first + PART; i++) {
+    for (int i = first; i < first + part; i++) {
         list[n] = (uint32_t)i;
         n += (uint32_t)(set[i] != 0);
     }
@@ -165,7 +168,7 @@ static uint32_t list_set(uint32_t *restrict list, const int32_t *restrict set, i
 }
 
 /* Lays on ray i what it has met of the facets from number first on, bit k for the k-th, nearest first. True: the ray is done. */
-static bool lay(draft_cover *cover, const meetings *m, uint32_t i, uint32_t met, uint32_t first) {
+DRAFT_WORK bool lay(draft_cover *cover, const meetings *m, uint32_t i, uint32_t met, uint32_t first) {
     while (met != 0) {
         uint32_t k = bits_lowest(met);
         for (uint32_t rest = met & (met - 1); rest != 0; rest &= rest - 1) {
@@ -181,17 +184,17 @@ static bool lay(draft_cover *cover, const meetings *m, uint32_t i, uint32_t met,
     return false;
 }
 
-bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k) {
+DRAFT_WORK bool visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k, int part) {
     int32_t through[DRAFT_BEAM];
     uint32_t list[DRAFT_BEAM], first, end;
     meetings m[DRAFT_FACETS_MAX];
     int32_t met[DRAFT_BEAM] = {0};
     const aset_real low[3] = {(aset_real)(int32_t)(at[0] * 16 + k % 4 * 4), (aset_real)(int32_t)(at[1] * 16 + k / 4 % 4 * 4),
                               (aset_real)(int32_t)(at[2] * 16 + k / 16 * 4)};
-    int32_t n_through[PARTS], n_all = 0;
-    for (int part = 0; part < PARTS; part++) {
-        n_through[part] = come_through(through, beam, low, part * PART);
-        n_all += n_through[part];
+    int32_t n_through[DRAFT_BEAM], n_all = 0; /* of a part: by its first ray */
+    for (int from = 0; from < DRAFT_BEAM; from += part) {
+        n_through[from] = come_through(through, beam, low, from, part);
+        n_all += n_through[from];
     }
     /* A hostile draft may lie where the band's draft lay, with its check sum: no voxel that it does not have. */
     if (n_all == 0 || dense >= beam->draft->n_blocks || (draft_marks(beam->draft, dense) >> k & 1u) == 0) {
@@ -203,14 +206,14 @@ bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dens
     for (uint32_t f = 0; f < end - first; f++) {
         plane p;
         find_plane(&p, &m[f], beam->draft, middle, first + f);
-        for (int part = 0; part < PARTS; part++) {
-            if (n_through[part] > 0) {
-                meet_facet(&m[f], met, (int32_t)(1u << f), beam, through, &p, part * PART);
+        for (int from = 0; from < DRAFT_BEAM; from += part) {
+            if (n_through[from] > 0) {
+                meet_facet(&m[f], met, (int32_t)(1u << f), beam, through, &p, from, part);
             }
         }
     }
-    for (int part = 0; part < PARTS; part++) {
-        uint32_t n = n_through[part] > 0 ? list_set(list, met, part * PART) : 0;
+    for (int from = 0; from < DRAFT_BEAM; from += part) {
+        uint32_t n = n_through[from] > 0 ? list_set(list, met, from, part) : 0;
         for (uint32_t j = 0; j < n; j++) {
             uint32_t i = list[j];
             beam->n_left -= lay(&beam->cover[i], m, i, (uint32_t)met[i], first);
@@ -219,6 +222,21 @@ bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dens
         }
     }
     return beam->n_left == 0;
+}
+
+#if ASET_WIDE
+DRAFT_WIDE_WORK bool visit_wide(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k) {
+    return visit(beam, at, dense, k, WIDE_PART);
+}
+#endif
+
+bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k) {
+#if ASET_WIDE
+    if (DRAFT_IS_WIDE) {
+        return visit_wide(beam, at, dense, k);
+    }
+#endif
+    return visit(beam, at, dense, k, PART);
 }
 
 #endif

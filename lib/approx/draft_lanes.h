@@ -19,6 +19,20 @@
 #define DRAFT_SHADES_BEAMS 1
 #endif
 
+/*
+ * Work that is compiled twice: a DRAFT_WORK is part of whatever calls it, so that a DRAFT_WIDE_WORK, which calls it too, has it in wide
+ * registers. AVX2 has no fused a * b + c: numbers stay what they are.
+ */
+#if ASET_WIDE
+#define DRAFT_WORK static inline __attribute__((always_inline))
+#define DRAFT_WIDE_WORK __attribute__((target("avx2"), flatten)) static
+#define DRAFT_RARE_WORK static __attribute__((noinline)) /* both call the same */
+#define DRAFT_IS_WIDE (__builtin_cpu_supports("avx2") != 0)
+#else
+#define DRAFT_WORK static
+#define DRAFT_RARE_WORK static
+#endif
+
 #define EACH_RAY(i) for (int i = 0; i < DRAFT_BEAM; i++)
 
 /* The vector of ray i, of rays' vectors side by side. */

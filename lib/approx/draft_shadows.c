@@ -18,8 +18,8 @@ static inline unsigned cell_bit(uint32_t cell) {
 }
 
 /* lane_start's arithmetic for rays that begin at t = 0; in steps, for what depends on branches is no loop for wide registers. */
-static void axis_start(draft_shadows_axis *restrict x, const aset_draft *draft, int a, const aset_real *restrict origins,
-                       const aset_real *restrict directions) {
+DRAFT_WORK void axis_start(draft_shadows_axis *restrict x, const aset_draft *draft, int a, const aset_real *restrict origins,
+                           const aset_real *restrict directions) {
     aset_real low = draft->low[a], per_size = draft->per_size[a];
     int32_t last = (int32_t)draft->blocks[a] * 4 - 1;
     aset_real side = (aset_real)(int32_t)draft->n[a] * VOXEL, turned_corner = (aset_real)(-4 * (last + 1)), last_real = (aset_real)last;
@@ -50,7 +50,7 @@ static void axis_start(draft_shadows_axis *restrict x, const aset_draft *draft, 
 }
 
 /* lanes_step for all rays. How many are not at their ends. */
-static int32_t step_all(draft_shadows *restrict s, uint32_t *restrict cells) {
+DRAFT_WORK int32_t step_all(draft_shadows *restrict s, uint32_t *restrict cells) {
     draft_shadows_axis *x = &s->axes[0], *y = &s->axes[1], *z = &s->axes[2];
     int32_t n = 0;
     EACH_RAY(i) {
@@ -79,8 +79,9 @@ static int32_t step_all(draft_shadows *restrict s, uint32_t *restrict cells) {
     return n;
 }
 
-void aset_draft_shadows_start(draft_shadows *restrict shadows, const aset_draft *draft, aset_real (*restrict origins)[DRAFT_BEAM],
-                              aset_real (*restrict directions)[DRAFT_BEAM]) {
+/* Takes the first steps. */
+DRAFT_WORK void set_out(draft_shadows *restrict shadows, const aset_draft *draft, aset_real (*restrict origins)[DRAFT_BEAM],
+                        aset_real (*restrict directions)[DRAFT_BEAM]) {
     shadows->draft = draft;
     for (int a = 0; a < 3; a++) {
         axis_start(&shadows->axes[a], draft, a, origins[a], directions[a]);
@@ -120,10 +121,16 @@ static inline lane lane_now(const draft_shadows *s, uint32_t i, int a) {
 }
 
 /* One that is not at its end, on from where it is. */
-static bool go_on(way *w, const draft_shadows *s, uint32_t i) {
+DRAFT_RARE_WORK bool go_on(way *w, const draft_shadows *s, uint32_t i) {
     lanes l = {lane_now(s, i, 0), lane_now(s, i, 1), lane_now(s, i, 2)};
     entry e = {s->t[i], s->axis[i]};
     return walk(w, &l, &e);
+}
+
+/* One that the first steps are not for. */
+DRAFT_RARE_WORK bool go_alone(way *w, const draft_shadows *s, uint32_t i) {
+    set_way(w, s, i);
+    return go(w);
 }
 
 /* Where a ray looks its voxels up: the block of the last one. */
@@ -189,21 +196,37 @@ static bool go_together(way *w, const draft_shadows *s, uint32_t i) {
     return blocked;
 }
 
-uint32_t aset_draft_shadows_block(const draft_shadows *shadows, uint32_t rays, draft_counts *counts) {
+DRAFT_WORK uint32_t send(draft_shadows *restrict shadows, const aset_draft *draft, aset_real (*restrict origins)[DRAFT_BEAM],
+                         aset_real (*restrict directions)[DRAFT_BEAM], uint32_t rays, draft_counts *counts) {
     uint32_t blocked = 0;
     way w;
     w.counts.cells = w.counts.nonempty = 0;
+    set_out(shadows, draft, origins, directions);
     for (; rays != 0; rays &= rays - 1) {
         uint32_t i = bits_lowest(rays);
-        if (shadows->axes[0].placed[i] != 0) {
-            blocked |= (uint32_t)go_together(&w, shadows, i) << i;
-        } else {
-            set_way(&w, shadows, i);
-            blocked |= (uint32_t)go(&w) << i;
-        }
+        bool placed = shadows->axes[0].placed[i] != 0;
+        blocked |= (uint32_t)(placed ? go_together(&w, shadows, i) : go_alone(&w, shadows, i)) << i;
     }
     *counts = w.counts;
     return blocked;
+}
+
+#if ASET_WIDE
+DRAFT_WIDE_WORK uint32_t send_wide(draft_shadows *restrict shadows, const aset_draft *draft,
+                                   aset_real (*restrict origins)[DRAFT_BEAM], aset_real (*restrict directions)[DRAFT_BEAM],
+                                   uint32_t rays, draft_counts *counts) {
+    return send(shadows, draft, origins, directions, rays, counts);
+}
+#endif
+
+uint32_t aset_draft_shadows_send(draft_shadows *restrict shadows, const aset_draft *draft, aset_real (*restrict origins)[DRAFT_BEAM],
+                                 aset_real (*restrict directions)[DRAFT_BEAM], uint32_t rays, draft_counts *counts) {
+#if ASET_WIDE
+    if (DRAFT_IS_WIDE) {
+        return send_wide(shadows, draft, origins, directions, rays, counts);
+    }
+#endif
+    return send(shadows, draft, origins, directions, rays, counts);
 }
 
 #endif

@@ -31,12 +31,12 @@ typedef struct draft_shadows {
     uint32_t n_steps;
 } draft_shadows;
 
-/* Starts rays of unit directions with DRAFT_PLANE; t_max and t_last are set, t_last is 0 where there is no ray to start. */
-void aset_draft_shadows_start(draft_shadows *restrict shadows, const aset_draft *draft, aset_real (*restrict origins)[DRAFT_BEAM],
-                              aset_real (*restrict directions)[DRAFT_BEAM]);
-
-/* Those of the rays, each a bit, of which aset_draft_blocks would say that something stops them. counts: of all. */
-uint32_t aset_draft_shadows_block(const draft_shadows *shadows, uint32_t rays, draft_counts *counts);
+/*
+ * Those of the rays asked for, each a bit, of which aset_draft_blocks would say that something stops them. All have unit directions;
+ * t_max and t_last are set, t_last is 0 for those that are not asked for. counts: of all.
+ */
+uint32_t aset_draft_shadows_send(draft_shadows *restrict shadows, const aset_draft *draft, aset_real (*restrict origins)[DRAFT_BEAM],
+                                 aset_real (*restrict directions)[DRAFT_BEAM], uint32_t rays, draft_counts *counts);
 
 #endif
 #endif

@@ -140,9 +140,9 @@ static void find_last(aset_real *restrict last, const lighting *restrict l, cons
 }
 
 /* Those of the rays that are asked for which meet something. */
-static uint32_t send(const draft_shadows *shadows, uint32_t asked, aset_statistics *statistics) {
+static uint32_t send(draft_shadows *shadows, lighting *l, const aset_draft *draft, uint32_t asked, aset_statistics *statistics) {
     draft_counts counts;
-    uint32_t met = aset_draft_shadows_block(shadows, asked, &counts), n_met = bits_count(met);
+    uint32_t met = aset_draft_shadows_send(shadows, draft, l->start, l->direction, asked, &counts), n_met = bits_count(met);
     statistics->cells_visited += counts.cells;
     statistics->nonempty_visited += counts.nonempty;
     statistics->approx_hits += n_met;
@@ -164,8 +164,7 @@ static void add_light(aset_colour *colours, beam_queue *q, const drawing *d, uin
     start_rays(&l, q, SHADE_SHADOW_SHARE * aset_query_clearance(tracer));
     find_last(last, &l, q, tracer, number);
     uint32_t asked = ask(&known, &shadows, &l, q, bit != 0, last);
-    aset_draft_shadows_start(&shadows, tracer->draft, l.start, l.direction);
-    uint32_t met = send(&shadows, asked, d->statistics);
+    uint32_t met = send(&shadows, &l, tracer->draft, asked, d->statistics);
     light_ray towards = {{0, 0, 0}, 0, light_colour(tracer->scene, light)};
     for (uint32_t i = 0; i < q->n; i++) {
         dark = (asked >> i & 1u) != 0 ? (met >> i & 1u) != 0 : dark;
