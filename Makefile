@@ -116,7 +116,7 @@ $(BUILD)/tests/determinism: tests/determinism.c $(ARCHIVES)
 $(BUILD)/tests/test_draft_narrow: tests/test_draft.c lib/approx/draft_beam.c lib/approx/draft_shadows.c $(wildcard tests/support/*) $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) -DASET_WIDE=0 $(CMOCKA_CFLAGS) -Itests -o $@ $(filter %.c,$^) $(ARCHIVES) $(CMOCKA_LIBS) -lm
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(NARROW) $(CMOCKA_CFLAGS) -Itests -o $@ $(filter %.c,$^) $(ARCHIVES) $(CMOCKA_LIBS) -lm
 
 # Public headers only, so no -Ilib.
 $(BUILD)/tests/bench: tests/bench.c tests/bench_common.h $(ARCHIVES)
@@ -141,13 +141,13 @@ $(BUILD)/tests/bench_peers $(BUILD)/tests/bench_drafts: $(BUILD)/tests/%: tests/
 	$(Q)if [ "$(EMBREE)" = yes ]; then with="-DBENCH_EMBREE=1" lib="-lembree3"; fi; \
 	  $(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $$with -o $@ $< $(PROCEDURAL_A) $(CORE_A) $$lib -lm
 
-# The same with the core compiled for registers as wide as those that Embree's kernels take on such a machine.
-WIDE ?= $(if $(shell grep -sm1 -w avx2 /proc/cpuinfo),-march=x86-64-v3)
-$(BUILD)/tests/bench_drafts_wide: tests/bench_drafts.c tests/bench_common.h $(ARCHIVES)
+# The same where no processor's wide registers are taken.
+NARROW := -DASET_WIDE=0
+$(BUILD)/tests/bench_drafts_narrow: tests/bench_drafts.c lib/approx/draft_beam.c lib/approx/draft_shadows.c tests/bench_common.h $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)if [ "$(EMBREE)" = yes ]; then with="-DBENCH_EMBREE=1" lib="-lembree3"; fi; \
-	  $(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(WIDE) "-DBENCH_WIDE=\"$(WIDE)\"" $$with -o $@ $< $(CORE) $(PROCEDURAL_A) $$lib -lm
+	  $(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(NARROW) "-DBENCH_BUILD=\"$(NARROW)\"" $$with -o $@ $(filter %.c,$^) $(PROCEDURAL_A) $(CORE_A) $$lib -lm
 
 # Every program and script at once over the cores, each one's output in one piece, the long ones first. What has not ended well
 # leaves its name in failed/. A make -jN is kept to.
@@ -313,9 +313,9 @@ bench-peers: $(BUILD)/tests/bench_peers ## ours beside Embree 3, if it is instal
 bench-robust: $(BUILD)/tests/bench_robust ## what robust geometry costs: the library's tests beside plain ones, in turns
 	@$(BUILD)/tests/bench_robust $(ARGS)
 
-bench-drafts: $(BUILD)/tests/bench_drafts $(if $(WIDE),$(BUILD)/tests/bench_drafts_wide) ## from triangles to a picture: a draft beside Embree 3, at 262,144 and 4,194,304 triangles
+bench-drafts: $(BUILD)/tests/bench_drafts $(BUILD)/tests/bench_drafts_narrow ## from triangles to a picture: a draft beside Embree 3, at 262,144 and 4,194,304 triangles
 	@$(BUILD)/tests/bench_drafts $(ARGS)
-	$(if $(WIDE),@$(BUILD)/tests/bench_drafts_wide $(ARGS))
+	@$(BUILD)/tests/bench_drafts_narrow $(ARGS)
 
 plan-check: $(BUILD)/aset ## a plan's expectations against what happens, on the seven SPD scenes and three odd ones (minutes)
 	bash tests/plan-check.sh $(BUILD)/aset $(BUILD)/plan-check

@@ -372,8 +372,8 @@ int main(int argc, char **argv) {
 #if !BENCH_EMBREE
     printf("built without Embree: ours alone\n");
 #endif
-#ifdef BENCH_WIDE
-    printf("the library compiled with %s:\n", BENCH_WIDE);
+#ifdef BENCH_BUILD
+    printf("the library compiled with %s:\n", BENCH_BUILD);
 #endif
     bool fine = true;
     if (i == argc) {
