@@ -105,7 +105,7 @@ a_draft_is_drawn_from_anywhere() {
 needs_of_drafts_are_enough() {
     local memory need first=
     works scene gears --size 2 -o gears.nff
-    for memory in 1 50000 100000 150000; do
+    for memory in 1 50000 100000 130000; do
         tool render gears.nff --grid 30 $draft_words --memory $memory -s 8x8
         [ $status -eq 1 ] || fail "$memory bytes: status $status"
         need=$(sed -n 's/.* needs \([0-9]*\) bytes.*/\1/p' "$err")
@@ -115,6 +115,10 @@ needs_of_drafts_are_enough() {
         [ $((need * 100)) -lt $((first * 125)) ] && [ $((need * 100)) -gt $((first * 80)) ] ||
             fail "with $memory bytes it needs $need, with 1 $first"
     done
+    works render gears.nff --grid 30 $draft_words --memory 160000 -s 8x8 # lists without maps, if there is no room for these
+    works scene gears -o large.nff
+    works bake large.nff --memory 400K -o a.draft # what is too fine is seen long before all of it is baked
+    [ "$(sed -n 's/.* \([0-9]*\) passes$/\1/p' "$out")" -lt 80 ] || fail "too many passes: $(cat "$out")"
 }
 
 headers_hold_the_words() {

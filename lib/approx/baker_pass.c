@@ -186,19 +186,27 @@ static void free_region(aset_baker *b) {
     b->arena->used_by[ASET_CATEGORY_SCRATCH] -= b->region_bytes;
 }
 
+static uint32_t longest_divisions(const aset_baker *b) {
+    uint32_t longest = b->n[0] > b->n[1] ? b->n[0] : b->n[1];
+    return longest > b->n[2] ? longest : b->n[2];
+}
+
+/* Are the divisions ours to choose, and not the coarsest? */
+static bool can_coarsen(const aset_baker *b) {
+    return b->options.divisions[0] == 0 && longest_divisions(b) > AUTO_LONGEST_MIN;
+}
+
 /* The region was too small: once more with a larger one, or coarser if the divisions are ours to choose. */
 static aset_status bake_again(aset_baker *b, size_t need) {
-    uint32_t longest = b->n[0] > b->n[1] ? b->n[0] : b->n[1];
-    longest = longest > b->n[2] ? longest : b->n[2];
+    uint32_t longest = longest_divisions(b);
     size_t had = b->region_bytes;
-    bool is_auto = b->options.divisions[0] == 0;
     free_region(b);
     size_t room = room_for_region(b);
     b->stage_sink = aset_counter_sink(&b->counter);
     if (had < room) {
         return start_baking(b, had / 4 * 5 < room ? had / 4 * 5 : room, longest);
     }
-    if (is_auto && longest > AUTO_LONGEST_MIN) {
+    if (can_coarsen(b)) {
         return start_baking(b, 0, longest * 3 / 4 > AUTO_LONGEST_MIN ? longest * 3 / 4 : AUTO_LONGEST_MIN);
     }
     return give_up(b, need);
@@ -277,7 +285,12 @@ static aset_status end_baking(aset_baker *b) {
         b->phase = PHASE_DONE;
         return ASET_OK;
     }
-    if (!start_pass(b)) {
+    bool can_begin_again = can_coarsen(b) || room_for_region(b) > 0;
+    bool goes_on = (!can_begin_again || aset_baker_has_room(b)) && start_pass(b);
+    if (!goes_on && can_begin_again) {
+        return bake_again(b, 0); /* now, and not after all the passes that are to come */
+    }
+    if (!goes_on) {
         b->counting = true; /* no room for more facets: they are counted, to tell the need */
         b->n_raw = 0;
         (void)start_pass(b);

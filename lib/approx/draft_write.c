@@ -420,30 +420,52 @@ static bool collect_by_sorting(number_set *set, const aset_baker *b, bool prints
     return true;
 }
 
-static bool collect(number_set *set, const aset_baker *b, bool prints, uint32_t **at, const uint32_t *end) {
+static bool collect(number_set *set, const aset_baker *b, bool prints, bool maps, uint32_t **at, const uint32_t *end) {
     uint64_t most = prints ? 65536 : (uint64_t)b->n_textures << SURFACE_TEXTURE_SHIFT;
-    return collect_by_map(set, b, prints, most, at, end) || collect_by_sorting(set, b, prints, at, end);
+    return (maps && collect_by_map(set, b, prints, most, at, end)) || collect_by_sorting(set, b, prints, at, end);
+}
+
+/* The lists for the words of the raw facets, and the room behind them. */
+typedef struct word_room {
+    number_set surfaces, prints;
+    uint32_t *words;
+    uint64_t n_words;
+} word_room;
+
+static bool find_room_with(word_room *r, const aset_baker *b, bool maps) {
+    const uint32_t *end = (const uint32_t *)(const void *)(b->raw - b->n_raw);
+    r->words = (uint32_t *)(void *)b->after;
+    if (!collect(&r->surfaces, b, false, maps, &r->words, end) || !collect(&r->prints, b, true, maps, &r->words, end)) {
+        return false;
+    }
+    r->n_words = count_words(b, b->n_raw, r->surfaces.n, r->prints.n);
+    return r->n_words <= (uint64_t)(end - r->words);
+}
+
+/* Maps take less time, and more room. */
+static bool find_room(word_room *r, const aset_baker *b) {
+    return find_room_with(r, b, true) || find_room_with(r, b, false);
+}
+
+bool aset_baker_has_room(const aset_baker *b) {
+    word_room r;
+    return find_room(&r, b);
 }
 
 aset_status aset_baker_write(aset_baker *b) {
     aset_draft draft;
-    uint32_t *words = (uint32_t *)(void *)b->after, *end = (uint32_t *)(void *)(b->raw - b->n_raw);
-    number_set surfaces, prints;
-    if (!collect(&surfaces, b, false, &words, end) || !collect(&prints, b, true, &words, end)) {
+    word_room r;
+    if (!find_room(&r, b)) {
         return ASET_ERR_NOMEM;
     }
-    uint64_t n_words = count_words(b, b->n_raw, surfaces.n, prints.n);
-    if (n_words > (uint64_t)(end - words)) {
-        return ASET_ERR_NOMEM;
-    }
-    write_header(words, b, n_words, surfaces.n, prints.n);
-    (void)aset_draft_bind(&draft, words, (size_t)n_words);
-    write_blocks(words, &draft, b);
-    write_facets(words, &draft, b, &surfaces, &prints);
-    write_stage(words, &draft, b);
-    words[WORD_CHECK] = aset_draft_checksum(words, (size_t)n_words);
-    memmove(b->region, words, (size_t)n_words * sizeof *words);
-    b->n_words = (size_t)n_words;
+    b->n_words = (size_t)r.n_words;
+    write_header(r.words, b, r.n_words, r.surfaces.n, r.prints.n);
+    (void)aset_draft_bind(&draft, r.words, b->n_words);
+    write_blocks(r.words, &draft, b);
+    write_facets(r.words, &draft, b, &r.surfaces, &r.prints);
+    write_stage(r.words, &draft, b);
+    r.words[WORD_CHECK] = aset_draft_checksum(r.words, b->n_words);
+    memmove(b->region, r.words, b->n_words * sizeof *r.words);
     return ASET_OK;
 }
 
