@@ -918,6 +918,28 @@ static void test_draft__beams_and_reach_change_no_picture(void **state) {
     check(looked_at * 10 < walked * 9, "%" PRIu64 " of %" PRIu64 " cells looked at", looked_at, walked); /* they are of use */
 }
 
+/* Voxels of less than two pixels: rays go alone, with or without beams. */
+static void test_draft__small_voxels_are_met_ray_by_ray(void **state) {
+    (void)state;
+    static unsigned char pixels[SIDE * SIDE * 4];
+    random_state r = random_start(seed_of(60));
+    model m;
+    drawn d;
+    model_of(&m, &r, 200, false);
+    bake(&d, &m, 20, 20, 20, true);
+    aset_tracer tracer = tracer_of(&d.draft);
+    aset_view view = view_from(vec(12, 3, 2));
+    for (uint32_t side = 10; side <= SIDE; side += SIDE - 10) {
+        aset_statistics alone = {0}, beside = {0};
+        assert_int_equal(draw_with(pixels, side, tracer, &view, (aids){0, 0}, 0, &alone), ASET_OK);
+        assert_int_equal(draw_with(pixels, side, tracer, &view, (aids){4000, 0}, 0, &beside), ASET_OK);
+        check((side == 10) == (beside.cells_visited == alone.cells_visited), "%u: %" PRIu64 " %" PRIu64, side, beside.cells_visited,
+              alone.cells_visited);
+    }
+    drawn_close(&d);
+    model_free(&m);
+}
+
 /* A tracer's scene may have its lights elsewhere than the draft, and more of them. */
 static void test_draft__a_reach_helps_its_own_lights_alone(void **state) {
     (void)state;
@@ -1451,6 +1473,7 @@ int main(void) {
         cmocka_unit_test(test_draft__beams_and_reach_change_no_picture),
         cmocka_unit_test(test_draft__a_reach_helps_its_own_lights_alone),
         cmocka_unit_test(test_draft__what_beams_meet_is_lit_alike),
+        cmocka_unit_test(test_draft__small_voxels_are_met_ray_by_ray),
         cmocka_unit_test(test_draft__beams_from_far_away_and_from_a_face),
         cmocka_unit_test(test_draft__beams_follow_the_draft_and_the_view),
         cmocka_unit_test(test_draft__beams_of_a_draft_that_was_exchanged),

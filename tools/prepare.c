@@ -83,23 +83,37 @@ static bool choose_view(prepared *p, const settings *s) {
 }
 
 #define REACH_TILES 64u
-#define BEAM_VOXELS 3072u
+/* A band of a draft of 64 divisions rarely has more voxels, one of 128 hardly ever. */
+#define BEAM_VOXELS_LEAST 3072u
+#define BEAM_VOXELS_MOST 12288u
 #define BEAM_THREADS 8u
 
+/* Voxels of a band for which the arena has room besides a reach; 0: it has none. */
+static uint32_t beam_voxels(const prepared *p, const settings *s) {
+    uint32_t threads = s->threads > BEAM_THREADS ? s->threads : BEAM_THREADS, voxels = BEAM_VOXELS_MOST;
+    size_t left = p->arena.size - p->arena.used, reach = ASET_BYTES_REACH(REACH_TILES, p->draft.stage.counts.lights);
+    while (voxels > BEAM_VOXELS_LEAST &&
+           (voxels > p->draft.n_facets / 4 || left < reach + threads * ASET_BYTES_BEAMS(voxels))) {
+        voxels /= 2;
+    }
+    return left < reach + threads * ASET_BYTES_BEAMS(voxels) ? 0 : voxels;
+}
+
 /*
- * What lets a draft be drawn in less time, if the arena has room for it besides. Whether it has is asked for eight threads at least,
+ * What lets a draft be drawn in less time, if the arena has room for it besides. How much it has is asked for eight threads at least,
  * so that counts of cells are the same for every usual number of them.
  */
 static void take_aids(prepared *p, const settings *s) {
-    uint32_t threads = s->threads > BEAM_THREADS ? s->threads : BEAM_THREADS;
-    size_t need = ASET_BYTES_REACH(REACH_TILES, p->draft.stage.counts.lights) + threads * ASET_BYTES_BEAMS(BEAM_VOXELS);
     p->mark = aset_arena_mark(&p->arena);
-    if (!p->is_drafted || s->cells != CELLS_PLANE || p->arena.size - p->arena.used < need ||
-        aset_reach_init(&p->reach, &p->draft, REACH_TILES, &p->arena) != ASET_OK) {
+    if (!p->is_drafted || s->cells != CELLS_PLANE) {
+        return;
+    }
+    uint32_t voxels = beam_voxels(p, s);
+    if (voxels == 0 || aset_reach_init(&p->reach, &p->draft, REACH_TILES, &p->arena) != ASET_OK) {
         return;
     }
     p->tracer.reach = &p->reach;
-    for (uint32_t i = 0; i < s->threads && aset_beams_init(&p->beams[i], BEAM_VOXELS, &p->arena) == ASET_OK; i++) {
+    for (uint32_t i = 0; i < s->threads && aset_beams_init(&p->beams[i], voxels, &p->arena) == ASET_OK; i++) {
         p->scratches[i].beams = &p->beams[i];
     }
 }

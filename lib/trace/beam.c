@@ -28,6 +28,8 @@
 /* Beams whose pixels are put together. */
 #define BEAM_GROUP 4u
 #define NONE UINT32_MAX
+/* A voxel's outline, for which beams take less time than single rays: from 0.7 to 5 pixels in nine drafts at 64 to 256 pixels. */
+#define LEAST_PIXELS R(2)
 /* Pixels that an outline's edges may err by: a picture's width has 16 bits, and a float 24. */
 #define PAD R(0.02)
 
@@ -215,6 +217,15 @@ static bool is_of(const aset_beams *b, const drawing *d) {
            b->samples == d->samples && b->corner == d->corner;
 }
 
+/* Is a voxel in the box's middle as large in the picture as LEAST_PIXELS? Of such as are smaller few rays of a beam meet the same. */
+static bool has_large_voxels(aset_outlook *o, const outlook_cells *cells, const aset_picture *picture) {
+    aset_outlook_set_voxels(o, cells, 0);
+    outlook_rectangle r = outlook_of(o, vec_sub(cells->middle, o->from), 1);
+    aset_real columns = (r.right - r.left) / 2 * (aset_real)(int32_t)picture->width;
+    aset_real rows = (r.bottom - r.top) / 2 * (aset_real)(int32_t)picture->height;
+    return columns * rows >= LEAST_PIXELS;
+}
+
 static bool begin(aset_beams *beams, const drawing *d) {
     const aset_draft *draft = d->tracer->draft;
     const camera *eye = &d->eye;
@@ -238,7 +249,7 @@ static bool begin(aset_beams *beams, const drawing *d) {
     beams->height = d->picture->height;
     beams->samples = d->samples;
     beams->corner = d->corner;
-    beams->can_see = draft->n_facets > 0 && aset_outlook_can_see(&outlook, &cells);
+    beams->can_see = draft->n_facets > 0 && aset_outlook_can_see(&outlook, &cells) && has_large_voxels(&outlook, &cells, d->picture);
     return beams->can_see;
 }
 
