@@ -99,7 +99,7 @@ typedef struct aset_baker {
     void *recent[6]; /* what each side found last, and under which key */
     uint32_t recent_keys[6];
     uint64_t *raw; /* one past the first facet; they grow downwards */
-    uint32_t n_raw;
+    uint32_t n_raw, n_listed, n_surfaces, n_footprints; /* the last three: when room for words was looked for */
     uint64_t n_counted;
     size_t n_words;
     aset_material *textures;

@@ -77,8 +77,8 @@ void aset_baker_harvest(aset_baker *baker);
 /* Makes the words at the region's start from all raw facets. ASET_ERR_NOMEM: the region has no room for both. */
 aset_status aset_baker_write(aset_baker *baker);
 
-/* Whether there would be room for the words of the raw facets so far. More of them need more. */
-bool aset_baker_has_room(const aset_baker *baker);
+/* False: there is no room for the words of the raw facets so far, and more of them need more. */
+bool aset_baker_may_have_room(aset_baker *baker);
 
 /* The bytes of a draft that is all in raw facets, and of the work to write it; with baker->n_counted facets if that is more. */
 size_t aset_baker_words_bound(const aset_baker *baker, uint64_t n_facets);

@@ -166,6 +166,7 @@ static aset_status start_baking(aset_baker *b, size_t wanted, uint32_t longest_m
     b->n_raw = 0;
     b->n_counted = 0;
     b->n_textures = 0;
+    b->n_listed = b->n_surfaces = b->n_footprints = 0;
     b->floor_block = 0;
     b->counting = false;
     b->failure = ASET_OK;
@@ -286,7 +287,7 @@ static aset_status end_baking(aset_baker *b) {
         return ASET_OK;
     }
     bool can_begin_again = can_coarsen(b) || room_for_region(b) > 0;
-    bool goes_on = (!can_begin_again || aset_baker_has_room(b)) && start_pass(b);
+    bool goes_on = (!can_begin_again || aset_baker_may_have_room(b)) && start_pass(b);
     if (!goes_on && can_begin_again) {
         return bake_again(b, 0); /* now, and not after all the passes that are to come */
     }

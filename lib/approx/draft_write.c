@@ -447,9 +447,32 @@ static bool find_room(word_room *r, const aset_baker *b) {
     return find_room_with(r, b, true) || find_room_with(r, b, false);
 }
 
-bool aset_baker_has_room(const aset_baker *b) {
+/* Words for so many surfaces and footprints, with the lists that they are made from; no maps. */
+static uint64_t words_and_lists(const aset_baker *b, uint64_t n_surfaces, uint64_t n_footprints) {
+    return count_words(b, b->n_raw, n_surfaces, n_footprints) + n_surfaces + n_footprints;
+}
+
+/* Listing all takes as long as a pass with few objects: so only where it is needed, and of half as many facets again as the last time. */
+bool aset_baker_may_have_room(aset_baker *b) {
+    uint64_t room = (uint64_t)((const uint32_t *)(const void *)(b->raw - b->n_raw) - (const uint32_t *)(const void *)b->after);
+    uint64_t n = b->n_raw;
     word_room r;
-    return find_room(&r, b);
+    if (words_and_lists(b, n, n < 65536 ? n : 65536) <= room) {
+        return true;
+    }
+    if (words_and_lists(b, b->n_surfaces, b->n_footprints) > room) {
+        return false;
+    }
+    if (b->n_raw / 3 < b->n_listed / 2) {
+        return true;
+    }
+    if (!find_room(&r, b)) {
+        return false;
+    }
+    b->n_listed = b->n_raw;
+    b->n_surfaces = r.surfaces.n;
+    b->n_footprints = r.prints.n;
+    return true;
 }
 
 aset_status aset_baker_write(aset_baker *b) {
