@@ -76,7 +76,7 @@
 #ifndef ASET_WIDE
 #define ASET_WIDE 0
 #if defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(__OPTIMIZE_SIZE__) && !defined(__AVX2__) && defined(__has_builtin)
-#if __has_builtin(__builtin_cpu_supports) && !defined(_WIN32) && __STDC_HOSTED__
+#if __has_builtin(__builtin_cpu_supports) && !defined(_WIN32) && !defined(__CYGWIN__) && __STDC_HOSTED__
 #undef ASET_WIDE
 #define ASET_WIDE 1
 #endif
