@@ -115,6 +115,10 @@ needs_of_drafts_are_enough() {
         [ $((need * 100)) -lt $((first * 125)) ] && [ $((need * 100)) -gt $((first * 80)) ] ||
             fail "with $memory bytes it needs $need, with 1 $first"
     done
+    refuses 1 "aset: gears.nff: the draft needs " bake gears.nff --grid 30 --memory 50000 -o a.draft
+    need=$(sed -n 's/.* needs \([0-9]*\) bytes.*/\1/p' "$err")
+    [ "$need" -gt 50000 ] && [ $((need * 100)) -lt $((first * 125)) ] || fail "to be baked it needs $need, to be drawn $first"
+    works bake gears.nff --grid 30 --memory "$need" -o a.draft
     works render gears.nff --grid 30 $draft_words --memory 160000 -s 8x8 # lists without maps, if there is no room for these
     works scene gears -o large.nff
     works bake large.nff --memory 400K -o a.draft # what is too fine is seen long before all of it is baked

@@ -4,6 +4,7 @@
  *
  * Invariant: what is written are the draft's words and nothing else; both forms hold the same ones on every machine.
  */
+#include "need.h"
 #include "prepare.h"
 
 #include <inttypes.h>
@@ -133,18 +134,20 @@ static aset_status bake_in(baked *b, const request *r, tool_source *source, uint
     return bake_passes(b, r, source, told);
 }
 
-/* The error line of a bake in too little memory. What is missing is known better with each try: so until it is enough. */
-static void tell_need(baked *b, const request *r, tool_source *source) {
-    uint64_t need = r->settings.memory;
-    bool told = false;
-    aset_status status = ASET_ERR_NOMEM;
-    while (status == ASET_ERR_NOMEM) {
-        need += b->arena.missing;
-        status = bake_in(b, r, source, need, &told);
-    }
-    if (!told) {
-        tool_error(r->model, 0, "the draft needs %" PRIu64 " bytes, has %" PRIu64, need, r->settings.memory);
-    }
+/* What a bake is tried with, in more memory than it had. */
+typedef struct trial_of {
+    baked *baked;
+    const request *request;
+    tool_source *source;
+} trial_of;
+
+static draft_trial try_bake(void *context, uint64_t memory) {
+    trial_of *of = context;
+    draft_trial t = {ASET_ERR_ARGUMENT, false, 0, 0};
+    t.status = bake_in(of->baked, of->request, of->source, memory, &t.told);
+    t.missing = of->baked->arena.missing;
+    t.peak = of->baked->arena.peak;
+    return t;
 }
 
 /* False after an error line; block is to be freed either way. */
@@ -158,7 +161,9 @@ static bool bake(baked *b, const request *r) {
     tool_source_set(&source, &r->settings);
     aset_status status = bake_in(b, r, &source, r->settings.memory, &told);
     if (status == ASET_ERR_NOMEM) {
-        tell_need(b, r, &source);
+        trial_of of = {b, r, &source};
+        tool_tell_draft_need(try_bake, &of, r->model, r->settings.memory, b->arena.missing,
+                             tool_need_is_quick(b->report.objects, r->settings.grid));
     } else if (status != ASET_OK && !told) {
         tool_error(r->model, 0, "%s", aset_status_text(status));
     }

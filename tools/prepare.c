@@ -5,6 +5,8 @@
  */
 #include "prepare.h"
 
+#include "need.h"
+
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -216,69 +218,32 @@ static bool take_block(prepared *p, const settings *s) {
     return true;
 }
 
-/* A draft made in so much memory, to see whether it is enough. */
-typedef struct draft_trial {
-    aset_status status;
-    bool told;
-    size_t missing, peak;
-} draft_trial;
+/* What a draft is tried with, in more memory than it had. */
+typedef struct trial_of {
+    const prepared *prepared;
+    const settings *settings;
+    tool_source *source;
+    const aset_counter *counter;
+} trial_of;
 
-static draft_trial try_draft(const prepared *p, const settings *s, tool_source *source, const aset_counter *counter,
-                             uint64_t memory) {
+static draft_trial try_draft(void *context, uint64_t memory) {
+    const trial_of *of = context;
     draft_trial t = {ASET_ERR_ARGUMENT, false, 0, 0};
     prepared more;
-    settings rich = *s;
+    settings rich = *of->settings;
     memset(&more, 0, sizeof more);
-    more.path = p->path;
+    more.path = of->prepared->path;
     more.is_drafted = true;
     rich.memory = memory;
     t.told = !take_block(&more, &rich);
     if (!t.told) {
-        t.status = p->is_streamed ? fill_streamed(&more, &rich, source, counter, &t.told)
-                                  : fill_arena(&more, &rich, source, &counter->counts, &t.told);
+        t.status = of->prepared->is_streamed ? fill_streamed(&more, &rich, of->source, of->counter, &t.told)
+                                             : fill_arena(&more, &rich, of->source, &of->counter->counts, &t.told);
     }
     t.missing = more.arena.missing;
     t.peak = more.arena.peak;
     prepare_free(&more);
     return t;
-}
-
-/* Trials that take no time worth speaking of: this many objects, and divisions of the longest axis, at the most. */
-#define NEED_OBJECTS 20000u
-#define NEED_DIVISIONS 128u
-
-static bool is_quick(const settings *s, const aset_counter *counter) {
-    uint32_t longest = s->grid[0] > s->grid[1] ? s->grid[0] : s->grid[1];
-    longest = longest > s->grid[2] ? longest : s->grid[2];
-    return counter->counts.objects <= NEED_OBJECTS && longest <= NEED_DIVISIONS;
-}
-
-/*
- * The error line of a draft in too little memory. What is missing is known better with each try: so until it is enough. That is
- * for few passes over the source, and what more of them get by with is known from no pass: so then, if trials are quick, halfway between
- * what is too little and what is enough, until these are an eighth apart; else what the last trial took. missing: of the try before.
- */
-static void tell_draft_need(const prepared *p, const settings *s, tool_source *source, const aset_counter *counter,
-                            size_t missing) {
-    uint64_t least = s->memory, enough = least;
-    draft_trial t = {ASET_ERR_NOMEM, false, missing, 0};
-    while (t.status == ASET_ERR_NOMEM) {
-        enough += t.missing;
-        t = try_draft(p, s, source, counter, enough);
-    }
-    while (t.status == ASET_OK || t.status == ASET_ERR_NOMEM) {
-        enough = t.status == ASET_OK && t.peak < enough ? t.peak : enough;
-        if (!is_quick(s, counter) || enough - least <= enough / 8) {
-            tool_error(source->path, 0, "the draft needs %" PRIu64 " bytes, has %" PRIu64, enough, s->memory);
-            return;
-        }
-        uint64_t middle = least + (enough - least) / 2;
-        t = try_draft(p, s, source, counter, middle);
-        *(t.status == ASET_OK ? &enough : &least) = middle;
-    }
-    if (!t.told) {
-        tool_error(source->path, 0, "%s", aset_status_text(t.status));
-    }
 }
 
 /* Memory in which the need of a streamed flat picture is looked for, if that is enough. */
@@ -333,7 +298,9 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
     aset_status status = p->is_streamed ? fill_streamed(p, s, source, &counter, &told)
                                         : fill_arena(p, s, source, &counter.counts, &told);
     if (status == ASET_ERR_NOMEM && p->is_drafted) {
-        tell_draft_need(p, s, source, &counter, p->arena.missing);
+        trial_of of = {p, s, source, &counter};
+        tool_tell_draft_need(try_draft, &of, source->path, s->memory, p->arena.missing,
+                             tool_need_is_quick(counter.counts.objects, s->grid));
     } else if (status == ASET_ERR_NOMEM && p->is_streamed) {
         tell_flat_need(s, source, &counter);
     } else if (status == ASET_ERR_NOMEM) {
