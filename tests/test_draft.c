@@ -138,6 +138,14 @@ static void model_of(model *m, random_state *r, uint32_t n, bool ground) {
     m->lights[1].colour.g = R(0.3);
 }
 
+/* A draft of such a model. */
+static void bake_model(drawn *d, random_state *r, uint32_t n, bool ground, uint32_t nx, uint32_t ny, uint32_t nz, bool keep_none) {
+    model m;
+    model_of(&m, r, n, ground);
+    bake(d, &m, nx, ny, nz, keep_none);
+    model_free(&m);
+}
+
 /* --- opening --- */
 
 typedef struct opened {
@@ -175,12 +183,10 @@ static void test_draft__opened_words_give_the_same_pictures(void **state) {
     for (uint64_t i = 0; i < 12; i++) {
         static unsigned char a[SIDE * SIDE * 4], b[SIDE * SIDE * 4];
         random_state r = random_start(seed_of(i));
-        model m;
         drawn d;
         opened *o = malloc(sizeof *o);
         aset_statistics before = {0}, after = {0};
-        model_of(&m, &r, i < 6 ? 100 : 14, i % 2 == 0);
-        bake(&d, &m, 12, 10, 14, false);
+        bake_model(&d, &r, i < 6 ? 100 : 14, i % 2 == 0, 12, 10, 14, false);
         kept += d.report.kept;
         copy_words(o, d.draft.words, d.draft.n_words);
         assert_int_equal(open_copy(o), ASET_OK);
@@ -202,7 +208,6 @@ static void test_draft__opened_words_give_the_same_pictures(void **state) {
         free(o->words);
         free(o);
         drawn_close(&d);
-        model_free(&m);
     }
     assert_true(kept > 12);
 }
@@ -261,12 +266,10 @@ static void test_draft__every_word_changed_is_refused_or_harmless(void **state) 
     (void)state;
     for (uint64_t i = 0; i < 3; i++) {
         random_state r = random_start(seed_of(20 + i));
-        model m;
         drawn d;
         opened *o = malloc(sizeof *o);
         uint32_t refused = 0, drawn_anyway = 0;
-        model_of(&m, &r, i == 0 ? 60 : 6, true);
-        bake(&d, &m, 5, 4, 6, i == 0);
+        bake_model(&d, &r, i == 0 ? 60 : 6, true, 5, 4, 6, i == 0);
         copy_words(o, d.draft.words, d.draft.n_words);
         for (size_t w = 0; w < o->n_words; w++) {
             uint32_t whole = o->words[w], sum = o->words[WORD_CHECK];
@@ -295,7 +298,6 @@ static void test_draft__every_word_changed_is_refused_or_harmless(void **state) 
         free(o->words);
         free(o);
         drawn_close(&d);
-        model_free(&m);
     }
 }
 
@@ -304,11 +306,9 @@ static void test_draft__many_words_changed(void **state) {
     (void)state;
     for (uint64_t i = 0; i < 30; i++) {
         random_state r = random_start(seed_of(30 + i));
-        model m;
         drawn d;
         opened *o = malloc(sizeof *o);
-        model_of(&m, &r, 40, true);
-        bake(&d, &m, 6, 6, 6, false);
+        bake_model(&d, &r, 40, true, 6, 6, 6, false);
         copy_words(o, d.draft.words, d.draft.n_words);
         for (int k = 0; k < 400; k++) {
             memcpy(o->words, d.draft.words, o->n_words * sizeof *o->words);
@@ -325,7 +325,6 @@ static void test_draft__many_words_changed(void **state) {
         free(o->words);
         free(o);
         drawn_close(&d);
-        model_free(&m);
     }
 }
 
@@ -333,11 +332,9 @@ static void test_draft__many_words_changed(void **state) {
 static void test_draft__a_voxel_has_six_facets_at_most(void **state) {
     (void)state;
     random_state r = random_start(seed_of(65));
-    model m;
     drawn d;
     opened *o = malloc(sizeof *o);
-    model_of(&m, &r, 200, false);
-    bake(&d, &m, 4, 4, 4, true);
+    bake_model(&d, &r, 200, false, 4, 4, 4, true);
     copy_words(o, d.draft.words, d.draft.n_words);
     uint32_t *starts = o->words + (d.draft.starts - d.draft.words), n = d.draft.n_facets, voxels = d.report.voxels;
     assert_int_equal(d.draft.n_blocks, 1);
@@ -353,16 +350,13 @@ static void test_draft__a_voxel_has_six_facets_at_most(void **state) {
     free(o->words);
     free(o);
     drawn_close(&d);
-    model_free(&m);
 }
 
 static void test_draft__cut_off_anywhere(void **state) {
     (void)state;
     random_state r = random_start(seed_of(70));
-    model m;
     drawn d;
-    model_of(&m, &r, 20, true);
-    bake(&d, &m, 5, 5, 5, false);
+    bake_model(&d, &r, 20, true, 5, 5, 5, false);
     for (size_t n = 0; n < d.draft.n_words + 3; n++) {
         opened *o = malloc(sizeof *o);
         size_t have = n < d.draft.n_words ? n : d.draft.n_words;
@@ -383,17 +377,14 @@ static void test_draft__cut_off_anywhere(void **state) {
         free(o);
     }
     drawn_close(&d);
-    model_free(&m);
 }
 
 static void test_draft__sentences_and_arguments(void **state) {
     (void)state;
     random_state r = random_start(seed_of(80));
-    model m;
     drawn d;
     opened *o = malloc(sizeof *o);
-    model_of(&m, &r, 20, true);
-    bake(&d, &m, 5, 5, 5, false);
+    bake_model(&d, &r, 20, true, 5, 5, 5, false);
     copy_words(o, d.draft.words, d.draft.n_words);
     assert_int_equal(open_copy(o), ASET_OK);
     aset_arena none;
@@ -435,7 +426,6 @@ static void test_draft__sentences_and_arguments(void **state) {
     free(o->words);
     free(o);
     drawn_close(&d);
-    model_free(&m);
 }
 
 static void test_draft__garbage(void **state) {
@@ -474,10 +464,8 @@ static void test_draft__layers_are_in_order_and_cover_once(void **state) {
     uint32_t met = 0, several = 0;
     for (uint64_t i = 0; i < 8; i++) {
         random_state r = random_start(seed_of(300 + i));
-        model m;
         drawn d;
-        model_of(&m, &r, 150, false);
-        bake(&d, &m, 14, 15, 16, true);
+        bake_model(&d, &r, 150, false, 14, 15, 16, true);
         for (int k = 0; k < 4000; k++) {
             draft_layer layers[DRAFT_LAYERS_MAX];
             draft_counts counts;
@@ -499,7 +487,6 @@ static void test_draft__layers_are_in_order_and_cover_once(void **state) {
             several += n > 1;
         }
         drawn_close(&d);
-        model_free(&m);
     }
     assert_true(met > 1000 && several > 50);
 }
@@ -513,10 +500,8 @@ static void test_draft__any_agrees_with_closest(void **state) {
     uint32_t solid = 0, passed = 0, blocked_by_nothing = 0, sides_differ = 0;
     for (uint64_t i = 0; i < 6; i++) {
         random_state r = random_start(seed_of(320 + i));
-        model m;
         drawn d;
-        model_of(&m, &r, 120, i % 2 == 0);
-        bake(&d, &m, 16, 16, 16, i % 3 == 0);
+        bake_model(&d, &r, 120, i % 2 == 0, 16, 16, 16, i % 3 == 0);
         aset_tracer tracer = tracer_of(&d.draft);
         const aset_vec3 voxel = {4 * d.draft.size[0], 4 * d.draft.size[1], 4 * d.draft.size[2]};
         for (int k = 0; k < 5000; k++) {
@@ -538,7 +523,6 @@ static void test_draft__any_agrees_with_closest(void **state) {
             }
         }
         drawn_close(&d);
-        model_free(&m);
     }
     check(blocked_by_nothing == 0, "%" PRIu32, blocked_by_nothing);
     check(sides_differ == 0, "%" PRIu32, sides_differ);
@@ -549,11 +533,9 @@ static void test_draft__any_agrees_with_closest(void **state) {
 static void test_draft__shadow_rays_ignore_the_voxel_that_they_start_in(void **state) {
     (void)state;
     random_state r = random_start(seed_of(330));
-    model m;
     drawn d;
     uint32_t met = 0;
-    model_of(&m, &r, 120, true);
-    bake(&d, &m, 16, 16, 16, false);
+    bake_model(&d, &r, 120, true, 16, 16, 16, false);
     aset_tracer tracer = tracer_of(&d.draft);
     const aset_real *low = d.draft.low, *column = d.draft.size;
     for (uint32_t i = 0; i < 16 * 16 * 16; i++) {
@@ -571,7 +553,6 @@ static void test_draft__shadow_rays_ignore_the_voxel_that_they_start_in(void **s
     }
     check(met > 100, "only %" PRIu32 " rays met anything", met);
     drawn_close(&d);
-    model_free(&m);
 }
 
 #if DRAFT_SHADES_BEAMS
@@ -597,12 +578,9 @@ static void test_draft__shadow_rays_side_by_side(void **state) {
     for (uint64_t i = 0; i < 600; i++) {
         static drawn d;
         random_state r = random_start(seed_of(1300 + i));
-        model m;
         if (i % 100 == 0) {
             static const uint32_t n[] = {16, 1, 7, 32, 64, 5};
-            model_of(&m, &r, 40, false);
-            bake(&d, &m, n[i / 100], n[(i / 100 + 1) % 6], n[(i / 100 + 2) % 6], true);
-            model_free(&m);
+            bake_model(&d, &r, 40, false, n[i / 100], n[(i / 100 + 1) % 6], n[(i / 100 + 2) % 6], true);
         }
         draft_shadows s;
         aset_vec3 origins[DRAFT_BEAM], directions[DRAFT_BEAM];
@@ -641,10 +619,8 @@ static void test_draft__shadow_rays_side_by_side(void **state) {
 static void test_draft__odd_rays(void **state) {
     (void)state;
     random_state r = random_start(seed_of(340));
-    model m;
     drawn d;
-    model_of(&m, &r, 100, true);
-    bake(&d, &m, 8, 8, 8, false);
+    bake_model(&d, &r, 100, true, 8, 8, 8, false);
     aset_tracer tracer = tracer_of(&d.draft);
     const aset_real odd[] = {R(NAN), REAL_INFINITY, -REAL_INFINITY};
     bool found;
@@ -685,7 +661,6 @@ static void test_draft__odd_rays(void **state) {
         }
     }
     drawn_close(&d);
-    model_free(&m);
 }
 
 /* A component of -0 is one of 0: in a ray, alone or in a beam, and towards a light. */
@@ -694,14 +669,12 @@ static void test_draft__zeros_of_either_sign(void **state) {
     static const aset_real zeros[2] = {0, R(-0.0)};
     static unsigned char pixels[4][SIDE * SIDE * 4];
     random_state r = random_start(seed_of(345));
-    model m;
     drawn d;
     aset_statistics counts[4];
     aset_light light;
     memset(counts, 0, sizeof counts);
     memset(&light, 0, sizeof light);
-    model_of(&m, &r, 150, false);
-    bake(&d, &m, 12, 12, 12, true);
+    bake_model(&d, &r, 150, false, 12, 12, 12, true);
     aset_tracer tracer = tracer_of(&d.draft);
     int met[2] = {0, 0}, blocked[2] = {0, 0};
     for (int k = 0; k < 2; k++) {
@@ -733,7 +706,6 @@ static void test_draft__zeros_of_either_sign(void **state) {
     }
     check(counts[0].shadow_hit > 50, "%" PRIu64 " shadow rays are stopped", counts[0].shadow_hit);
     drawn_close(&d);
-    model_free(&m);
 }
 
 #if ASET_WITH_SPHERES
@@ -774,10 +746,8 @@ static void test_draft__without_a_space_all_rays_must_be_approximate(void **stat
     (void)state;
     static unsigned char pixels[SIDE * SIDE * 4];
     random_state r = random_start(seed_of(360));
-    model m;
     drawn d;
-    model_of(&m, &r, 60, true);
-    bake(&d, &m, 8, 8, 8, false);
+    bake_model(&d, &r, 60, true, 8, 8, 8, false);
     aset_tracer tracer = tracer_of(&d.draft);
     aset_view view = view_from(dvec_real(dvec_make(12, 5, 3)));
     aset_ray ray = {{9, 9, 9}, {-1, -1, -1}, REAL_INFINITY};
@@ -802,7 +772,6 @@ static void test_draft__without_a_space_all_rays_must_be_approximate(void **stat
     assert_int_equal(draw(pixels, SIDE, &tracer, &view, NULL), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, true, NULL), ASET_ERR_ARGUMENT);
     drawn_close(&d);
-    model_free(&m);
 }
 
 /* Nothing but the cells that are looked at may depend on beams and reach. */
@@ -923,10 +892,8 @@ static void test_draft__small_voxels_are_met_ray_by_ray(void **state) {
     (void)state;
     static unsigned char pixels[SIDE * SIDE * 4];
     random_state r = random_start(seed_of(60));
-    model m;
     drawn d;
-    model_of(&m, &r, 200, false);
-    bake(&d, &m, 20, 20, 20, true);
+    bake_model(&d, &r, 200, false, 20, 20, 20, true);
     aset_tracer tracer = tracer_of(&d.draft);
     aset_view view = view_from(vec(12, 3, 2));
     for (uint32_t side = 10; side <= SIDE; side += SIDE - 10) {
@@ -937,7 +904,6 @@ static void test_draft__small_voxels_are_met_ray_by_ray(void **state) {
               alone.cells_visited);
     }
     drawn_close(&d);
-    model_free(&m);
 }
 
 /* A tracer's scene may have its lights elsewhere than the draft, and more of them. */
@@ -1036,10 +1002,8 @@ static void test_draft__beams_from_far_away_and_from_a_face(void **state) {
     for (uint64_t i = 0; i < 60; i++) {
         random_state r = random_start(seed_of(800 + i));
         const uint32_t *n = divisions[i % COUNT_OF(divisions)];
-        model m;
         drawn d;
-        model_of(&m, &r, 100, false);
-        bake(&d, &m, n[0], n[1], n[2], true);
+        bake_model(&d, &r, 100, false, n[0], n[1], n[2], true);
         aset_tracer tracer = tracer_of(&d.draft);
         aset_vec3 out = random_direction(&r), middle;
         aset_real *from = &middle.x, longest = 0;
@@ -1063,7 +1027,6 @@ static void test_draft__beams_from_far_away_and_from_a_face(void **state) {
         }
         check_aids_change_nothing(&tracer, &view, (aids){8000, 0}, r.seed);
         drawn_close(&d);
-        model_free(&m);
     }
 }
 
@@ -1095,10 +1058,8 @@ static void test_draft__beams_follow_the_draft_and_the_view(void **state) {
     beam_studio_open(&b, SIDE, 4000);
     for (uint64_t i = 0; i < 8; i++) { /* the same beams for one draft, view and size after the other */
         random_state r = random_start(seed_of(i));
-        model m;
         drawn d;
-        model_of(&m, &r, 60, false);
-        bake(&d, &m, 12, 12, 12, true);
+        bake_model(&d, &r, 60, false, 12, 12, 12, true);
         aset_tracer tracer = tracer_of(&d.draft);
         for (int k = 0; k < 2; k++) {
             aset_view view = any_view(&r, (uint64_t)k * 2);
@@ -1111,7 +1072,6 @@ static void test_draft__beams_follow_the_draft_and_the_view(void **state) {
             check(memcmp(first[k], again, sizeof again) == 0, SEED ": %d", r.seed, k);
         }
         drawn_close(&d);
-        model_free(&m);
     }
     guarded_close(&b.memory);
 }
@@ -1261,10 +1221,8 @@ static void test_draft__beams_are_of_one_picture(void **state) {
     aset_arena arena;
     aset_scratch scratch;
     aset_beams beams;
-    model m;
     drawn d;
-    model_of(&m, &r, 60, false);
-    bake(&d, &m, 12, 12, 12, true);
+    bake_model(&d, &r, 60, false, 12, 12, 12, true);
     assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
     assert_int_equal(aset_scratch_init(&scratch, 0, &arena), ASET_OK);
     assert_int_equal(aset_beams_init(&beams, 4000, &arena), ASET_OK);
@@ -1310,7 +1268,6 @@ static void test_draft__beams_are_of_one_picture(void **state) {
         check(memcmp(plain, again, sizeof plain) == 0, "thing %d, rows that overlap", i);
     }
     drawn_close(&d);
-    model_free(&m);
     guarded_close(&memory);
 }
 
@@ -1321,10 +1278,8 @@ static void test_draft__beams_and_reach_refuse(void **state) {
     aset_beams beams;
     aset_reach reach;
     random_state r = random_start(seed_of(1));
-    model m;
     drawn d;
-    model_of(&m, &r, 20, false);
-    bake(&d, &m, 8, 8, 8, true);
+    bake_model(&d, &r, 20, false, 8, 8, 8, true);
     assert_int_equal(aset_arena_init(&arena, block, sizeof block), ASET_OK);
     assert_int_equal(aset_beams_init(NULL, 9, &arena), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_beams_init(&beams, 0, &arena), ASET_ERR_ARGUMENT);
@@ -1341,7 +1296,6 @@ static void test_draft__beams_and_reach_refuse(void **state) {
     assert_int_equal(arena.missing, ASET_BYTES_REACH(64, d.draft.stage.counts.lights) - sizeof block);
     assert_int_equal(arena.used, 0);
     drawn_close(&d);
-    model_free(&m);
 }
 
 static void test_draft__statistics(void **state) {

@@ -135,14 +135,14 @@ static aset_status bake_in(baked *b, const request *r, tool_source *source, uint
 }
 
 /* What a bake is tried with, in more memory than it had. */
-typedef struct trial_of {
+typedef struct bake_trial {
     baked *baked;
     const request *request;
     tool_source *source;
-} trial_of;
+} bake_trial;
 
 static draft_trial try_bake(void *context, uint64_t memory) {
-    trial_of *of = context;
+    bake_trial *of = context;
     draft_trial t = {ASET_ERR_ARGUMENT, false, 0, 0};
     t.status = bake_in(of->baked, of->request, of->source, memory, &t.told);
     t.missing = of->baked->arena.missing;
@@ -161,7 +161,7 @@ static bool bake(baked *b, const request *r) {
     tool_source_set(&source, &r->settings);
     aset_status status = bake_in(b, r, &source, r->settings.memory, &told);
     if (status == ASET_ERR_NOMEM) {
-        trial_of of = {b, r, &source};
+        bake_trial of = {b, r, &source};
         tool_tell_draft_need(try_bake, &of, r->model, r->settings.memory, b->arena.missing,
                              tool_need_is_quick(b->report.objects, r->settings.grid));
     } else if (status != ASET_OK && !told) {

@@ -219,15 +219,15 @@ static bool take_block(prepared *p, const settings *s) {
 }
 
 /* What a draft is tried with, in more memory than it had. */
-typedef struct trial_of {
+typedef struct prepare_trial {
     const prepared *prepared;
     const settings *settings;
     tool_source *source;
     const aset_counter *counter;
-} trial_of;
+} prepare_trial;
 
 static draft_trial try_draft(void *context, uint64_t memory) {
-    const trial_of *of = context;
+    const prepare_trial *of = context;
     draft_trial t = {ASET_ERR_ARGUMENT, false, 0, 0};
     prepared more;
     settings rich = *of->settings;
@@ -298,7 +298,7 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
     aset_status status = p->is_streamed ? fill_streamed(p, s, source, &counter, &told)
                                         : fill_arena(p, s, source, &counter.counts, &told);
     if (status == ASET_ERR_NOMEM && p->is_drafted) {
-        trial_of of = {p, s, source, &counter};
+        prepare_trial of = {p, s, source, &counter};
         tool_tell_draft_need(try_draft, &of, source->path, s->memory, p->arena.missing,
                              tool_need_is_quick(counter.counts.objects, s->grid));
     } else if (status == ASET_ERR_NOMEM && p->is_streamed) {

@@ -56,7 +56,7 @@ struct aset_beams {
 /*
  * Takes beams from the arena, for bands of eight rows that show up to so many voxels, hidden ones included: a fiftieth to a tenth
  * of the draft's. Rows that show more are drawn ray by ray, and so is everything that is not a draft by its planes, seen from
- * wholly before it, with voxels of two pixels or more in its middle. ASET_ERR_ARGUMENT: voxels out of 1 to ASET_BEAMS_MAX; ASET_ERR_NOMEM.
+ * wholly before it, and voxels that cover two pixels or more in its middle. ASET_ERR_ARGUMENT: voxels out of 1 to ASET_BEAMS_MAX; ASET_ERR_NOMEM.
  */
 aset_status aset_beams_init(aset_beams *beams, uint32_t voxels, aset_arena *arena);
 

@@ -224,18 +224,14 @@ DRAFT_WORK bool visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, un
     return beam->n_left == 0;
 }
 
-#if ASET_WIDE
 DRAFT_WIDE_WORK bool visit_wide(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k) {
     return visit(beam, at, dense, k, WIDE_PART);
 }
-#endif
 
 bool aset_draft_beam_visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, unsigned k) {
-#if ASET_WIDE
-    if (DRAFT_IS_WIDE) {
+    if (DRAFT_HAS_WIDE) {
         return visit_wide(beam, at, dense, k);
     }
-#endif
     return visit(beam, at, dense, k, PART);
 }
 

@@ -20,17 +20,19 @@
 #endif
 
 /*
- * Work that is compiled twice: a DRAFT_WORK is part of whatever calls it, so that a DRAFT_WIDE_WORK, which calls it too, has it in wide
- * registers. AVX2 has no fused a * b + c: numbers stay what they are.
+ * Work that is compiled twice: a DRAFT_WORK becomes a part of whatever calls it; a DRAFT_WIDE_WORK, which calls it for AVX2, so has it in wide
+ * registers, and is called if DRAFT_HAS_WIDE. AVX2 has no fused a * b + c: numbers stay what they are. DRAFT_RARE_WORK: both call the same.
  */
 #if ASET_WIDE
 #define DRAFT_WORK static inline __attribute__((always_inline))
 #define DRAFT_WIDE_WORK __attribute__((target("avx2"), flatten)) static
-#define DRAFT_RARE_WORK static __attribute__((noinline)) /* both call the same */
-#define DRAFT_IS_WIDE (__builtin_cpu_supports("avx2") != 0)
+#define DRAFT_RARE_WORK static __attribute__((noinline))
+#define DRAFT_HAS_WIDE (__builtin_cpu_supports("avx2") != 0)
 #else
 #define DRAFT_WORK static
+#define DRAFT_WIDE_WORK static
 #define DRAFT_RARE_WORK static
+#define DRAFT_HAS_WIDE false
 #endif
 
 #define EACH_RAY(i) for (int i = 0; i < DRAFT_BEAM; i++)

@@ -211,21 +211,17 @@ DRAFT_WORK uint32_t send(draft_shadows *restrict shadows, const aset_draft *draf
     return blocked;
 }
 
-#if ASET_WIDE
 DRAFT_WIDE_WORK uint32_t send_wide(draft_shadows *restrict shadows, const aset_draft *draft,
                                    aset_real (*restrict origins)[DRAFT_BEAM], aset_real (*restrict directions)[DRAFT_BEAM],
                                    uint32_t rays, draft_counts *counts) {
     return send(shadows, draft, origins, directions, rays, counts);
 }
-#endif
 
 uint32_t aset_draft_shadows_send(draft_shadows *restrict shadows, const aset_draft *draft, aset_real (*restrict origins)[DRAFT_BEAM],
                                  aset_real (*restrict directions)[DRAFT_BEAM], uint32_t rays, draft_counts *counts) {
-#if ASET_WIDE
-    if (DRAFT_IS_WIDE) {
+    if (DRAFT_HAS_WIDE) {
         return send_wide(shadows, draft, origins, directions, rays, counts);
     }
-#endif
     return send(shadows, draft, origins, directions, rays, counts);
 }
 

@@ -432,8 +432,13 @@ typedef struct word_room {
     uint64_t n_words;
 } word_room;
 
+/* Where the room ends that the raw facets leave. */
+static const uint32_t *room_end(const aset_baker *b) {
+    return (const uint32_t *)(const void *)(b->raw - b->n_raw);
+}
+
 static bool find_room_with(word_room *r, const aset_baker *b, bool maps) {
-    const uint32_t *end = (const uint32_t *)(const void *)(b->raw - b->n_raw);
+    const uint32_t *end = room_end(b);
     r->words = (uint32_t *)(void *)b->after;
     if (!collect(&r->surfaces, b, false, maps, &r->words, end) || !collect(&r->prints, b, true, maps, &r->words, end)) {
         return false;
@@ -454,8 +459,7 @@ static uint64_t words_and_lists(const aset_baker *b, uint64_t n_surfaces, uint64
 
 /* Listing all takes as long as a pass with few objects: so only where it is needed, and of half as many facets again as the last time. */
 bool aset_baker_may_have_room(aset_baker *b) {
-    uint64_t room = (uint64_t)((const uint32_t *)(const void *)(b->raw - b->n_raw) - (const uint32_t *)(const void *)b->after);
-    uint64_t n = b->n_raw;
+    uint64_t room = (uint64_t)(room_end(b) - (const uint32_t *)(const void *)b->after), n = b->n_raw;
     word_room r;
     if (words_and_lists(b, n, n < 65536 ? n : 65536) <= room) {
         return true;

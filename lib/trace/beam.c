@@ -28,7 +28,7 @@
 /* Beams whose pixels are put together. */
 #define BEAM_GROUP 4u
 #define NONE UINT32_MAX
-/* A voxel's outline, for which beams take less time than single rays: from 0.7 to 5 pixels in nine drafts at 64 to 256 pixels. */
+/* Pixels that a voxel must cover for beams to take less time than single rays: 0.7 to 5, by the draft, in nine at 64 to 256 pixels. */
 #define LEAST_PIXELS R(2)
 /* Pixels that an outline's edges may err by: a picture's width has 16 bits, and a float 24. */
 #define PAD R(0.02)
@@ -217,7 +217,7 @@ static bool is_of(const aset_beams *b, const drawing *d) {
            b->samples == d->samples && b->corner == d->corner;
 }
 
-/* Is a voxel in the box's middle as large in the picture as LEAST_PIXELS? Of such as are smaller few rays of a beam meet the same. */
+/* Does a voxel in the box's middle cover LEAST_PIXELS? Few rays of a beam meet the same voxel if it covers less. */
 static bool has_large_voxels(aset_outlook *o, const outlook_cells *cells, const aset_picture *picture) {
     aset_outlook_set_voxels(o, cells, 0);
     outlook_rectangle r = outlook_of(o, vec_sub(cells->middle, o->from), 1);
