@@ -54,6 +54,7 @@ static void test_stl__text_in_other_spellings(void **state) {
                 GREY ONE_LOG);
     expect_text(aset_load_stl, "solid\nfacet outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet endsolid",
                 GREY ONE_LOG);
+    expect_text(aset_load_stl, "\xef\xbb\xbf" "solid\n" ONE "endsolid", GREY ONE_LOG); /* UTF-8's mark */
 }
 
 static void test_stl__polygons_are_fanned_and_short_ones_counted(void **state) {

@@ -27,6 +27,10 @@ static bool look_into(look *l, FILE *file) {
         return false;
     }
     l->n = fread(l->bytes, 1, LOOK_BYTES, file);
+    if (l->n >= 3 && memcmp(l->bytes, "\xef\xbb\xbf", 3) == 0) { /* the mark of a text in UTF-8 */
+        l->n -= 3;
+        memmove(l->bytes, l->bytes + 3, l->n);
+    }
     l->bytes[l->n] = '\0';
     l->size = (uint64_t)status.st_size;
     return true;

@@ -294,7 +294,10 @@ static aset_status begin(ply *file) {
     aset_reader *reader = &file->model.reader;
     const unsigned char *bytes;
     size_t n;
-    aset_status status = aset_reader_peek(reader, 5, &bytes, &n);
+    aset_status status = aset_reader_skip_mark(reader);
+    if (status == ASET_OK) {
+        status = aset_reader_peek(reader, 5, &bytes, &n);
+    }
     if (status != ASET_OK) {
         return status;
     }

@@ -204,8 +204,9 @@ static aset_status read_text(aset_model *model) {
     aset_reader *reader = &model->reader;
     reader->comment = -1;
     reader->cut = "the file ends within a solid";
-    for (;;) {
-        aset_status status = aset_reader_next(reader);
+    aset_status status = aset_reader_skip_mark(reader);
+    while (status == ASET_OK) {
+        status = aset_reader_next(reader);
         if (status == ASET_OK && reader->length == 0) {
             return aset_model_end(model);
         }
@@ -215,10 +216,8 @@ static aset_status read_text(aset_model *model) {
         if (status == ASET_OK) {
             status = read_solid(model);
         }
-        if (status != ASET_OK) {
-            return status;
-        }
     }
+    return status;
 }
 
 /* ---- which of the two ---- */
@@ -229,7 +228,7 @@ static bool is_blank(unsigned char c) {
 
 static bool begins_with_solid(const unsigned char *bytes, size_t size) {
     static const char word[] = "solid";
-    size_t at = 0;
+    size_t at = size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8's mark */
     while (at < size && is_blank(bytes[at])) {
         at++;
     }
