@@ -1044,6 +1044,12 @@ END
         tool plan "$scene" --method brute $words
         refused 2 "aset: plan: --method: "
     done
+    # by the SPD's rules what transmits reflects too, so the program needs that code
+    printf 'v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nresolution 32 32\nl 0 5 5\nf 1 1 1 0.5 0 1 0.5 1.3\ns 0 0 0 1\n' >glass.nff
+    works plan glass.nff --header usual.h
+    works plan glass.nff --header spd.h --rules spd
+    [ "$(diff usual.h spd.h | grep '^[<>]' | xargs)" = "< #define ASET_WITH_REFLECTION 0 > #define ASET_WITH_REFLECTION 1" ] ||
+        fail "the headers differ: $(diff usual.h spd.h | xargs)"
 }
 
 # A tree's depth is 6 unless said otherwise, and never less in silence.
@@ -1211,6 +1217,28 @@ trade_takes_renders_words() {
         fail "other settings than all rays from depth 0"
     works trade "$scenes/balls.nff" -o t -m mset --grids 6 -s 24x24 --rounds 1 --approx none
     [ "$(wc -l <t/trade.csv)" -eq 2 ] || fail "not only the exact setting"
+    works trade "$scenes/balls.nff" -o t -m mset,octree --grids 6 --octree-depth 3 --cells flat,plane -s 24x24 --rounds 1 --rules spd
+    trade_says_the_same "$scenes/balls.nff" 24x24 "--rules spd"
+    [ "$(wc -l <rows)" -eq 10 ] || fail "$(wc -l <rows) rows"
+    tool trade "$scenes/balls.nff" -o t --rules spd --samples 4
+    refused 2 "aset: --rules: the SPD procedure has one ray a pixel corner"
+}
+
+# With --memory the table is the one without less the settings that need more, exact ones apart; those are not called best.
+trade_within_memory() {
+    local sweep="trade $scenes/balls.nff -m mset,grid --grids 8,24 -s 24x24 --rounds 1" bytes
+    works $sweep -o all
+    bytes=$(awk "$trade_columns"' { print $c["peak_bytes"] }' all/trade.csv | sort -n | uniq | sed -n 4p) # of some it is the need
+    works $sweep -o t --memory "$bytes"
+    grep -qx "$(awk "$trade_columns"' $c["approx"] != "none" && $c["peak_bytes"] > '"$bytes"' { n++ } END { print n }' all/trade.csv) settings need more than $bytes bytes and are left out" "$out" ||
+        fail "it does not say how many are left out"
+    for table in all t; do
+        awk "$trade_columns"' $c["approx"] == "none" || $c["peak_bytes"] <= '"$bytes"' { print $1, $2, $3, $4, $5, $6, $7, $8, $c["peak_bytes"] }' \
+            $table/trade.csv >$table.rows
+    done
+    same all.rows t.rows "other settings than those that fit"
+    [ "$(wc -l <t/trade.csv)" -eq $((1 + $(wc -l <t.rows))) ] || fail "there are settings that do not fit"
+    awk "$trade_columns"' $c["best"] == 1 && $c["peak_bytes"] > '"$bytes"' { exit 1 }' t/trade.csv || fail "what does not fit is best"
 }
 
 # A model's view depends on the picture's shape, and its materials come from another file.
@@ -1317,7 +1345,7 @@ scene_text_is_read_freely budget_exact budget_approximate flat_is_streamed budge
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
 scene_into_render models_on_standard_input compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
 full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere plan_and_info_at_the_edges plan_keeps_its_word plan_takes_renders_words tree_depth_is_kept old_output interrupted progress_bar
-trade_table trade_best_marks trade_says_what_render_says trade_takes_renders_words trade_of_a_model trade_resumes trade_page trade_refuses
+trade_table trade_best_marks trade_says_what_render_says trade_takes_renders_words trade_within_memory trade_of_a_model trade_resumes trade_page trade_refuses
 "
 # shellcheck disable=SC2086
 run_cases $cases

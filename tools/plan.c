@@ -21,6 +21,7 @@ static const char help[] =
     "      --leaf K                                      refused: a plan has no octree, ARTS or EXCELL\n"
     "  -s, --size WxH|N     the picture; default the scene's, else 512x512\n"
     "      --depth N        rays in a chain; default 5\n"
+    "      --rules spd      the SPD testing procedure, as for render\n"
     "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   another camera than the scene's\n"
     "      --up-axis y|z, --ground on|off, --smooth   of models, as for render\n"
     "      --all            print every setting that was probed, before the one chosen\n"
@@ -97,7 +98,7 @@ static bool tell(const request *r, const plan *p, const measured *m) {
     if (!is_standard(r->header)) {
         print(p, s);
     }
-    return r->header == NULL || plan_write_header(r->header, m, r->scene, s, r->wish.depth);
+    return r->header == NULL || plan_write_header(r->header, m, r->scene, s, &r->wish);
 }
 
 static bool plan_from(const request *r, tool_source *source) {
@@ -105,7 +106,11 @@ static bool plan_from(const request *r, tool_source *source) {
     measured m;
     plan p;
     aset_sink sink = aset_counter_sink(&counter);
-    if (!tool_source_read(source, &sink) || !measured_open(&m, source, &counter.counts)) {
+    if (!tool_source_read(source, &sink)) {
+        return false;
+    }
+    tool_source_rules(source, &r->settings, &counter.counts);
+    if (!measured_open(&m, source, &counter.counts)) {
         return false;
     }
     plan_wish wish = r->wish;
@@ -178,6 +183,7 @@ static bool parse_request(request *r, int argc, char **argv) {
         }
     }
     r->wish.depth = r->settings.depth;
+    r->wish.spd_rules = r->settings.spd_rules;
     if (r->settings.leaf > 0) {
         tool_error(NULL, 0, "--leaf: a plan has no octree, ARTS or EXCELL, expected a plan without");
         return false;
@@ -186,6 +192,9 @@ static bool parse_request(request *r, int argc, char **argv) {
     bool is_approximate = given->has_approx ? given->approx_kinds != 0 : given->has_approx_depth;
     if (r->wish.method == &aset_brute && (given->grid[0] > 0 || is_approximate)) {
         tool_error(NULL, 0, "plan: --method: brute force has no divisions and approximates nothing here, expected mset, grid or set");
+        return false;
+    }
+    if (!settings_check(given)) {
         return false;
     }
     if (r->wish.error_db > 0 && r->wish.time_ms > 0) {

@@ -23,7 +23,7 @@ typedef struct plan_wish {
     double error_db, time_ms;
     uint32_t width, height, depth, samples; /* samples: along one side of a pixel */
     double curtail;
-    bool curtail_more;
+    bool curtail_more, spd_rules;
     const aset_method *method;           /* NULL: any */
     uint32_t grid[3];                    /* 0: any */
     bool has_approx;                     /* these rays are approximate, and no others */
@@ -45,6 +45,7 @@ typedef struct plan {
 bool plan_make(plan *p, measured *m, const char *path, const plan_wish *wish);
 
 /* Writes the header for the setting. False after an error line. */
-bool plan_write_header(const char *path, const measured *m, const char *scene_path, const plan_setting *s, uint32_t depth);
+bool plan_write_header(const char *path, const measured *m, const char *scene_path, const plan_setting *s,
+                       const plan_wish *wish);
 
 #endif

@@ -26,15 +26,17 @@ static bool any_transmits(const aset_scene *scene) {
 }
 
 /*
- * Reflected rays are sent where there is something to reflect with and a level for them; the highlight stays either way.
+ * Reflected rays are sent where there is something to reflect with, by the SPD's rules what transmits too, and a level for them; the
+ * highlight stays either way.
  */
-static void print_switches(FILE *f, const aset_scene *scene, const plan_setting *s, uint32_t depth) {
+static void print_switches(FILE *f, const aset_scene *scene, const plan_setting *s, const plan_wish *wish) {
     const aset_counts *c = &scene->counts;
+    bool reflects = any_reflects(scene) || (wish->spd_rules && any_transmits(scene));
     (void)fprintf(f, "#define ASET_WITH_POLYGONS %d\n", c->polygons + c->patches > 0);
     (void)fprintf(f, "#define ASET_WITH_PATCHES %d\n", c->patches > 0);
     (void)fprintf(f, "#define ASET_WITH_SPHERES %d\n", c->spheres > 0);
     (void)fprintf(f, "#define ASET_WITH_CONES %d\n", c->cones > 0);
-    (void)fprintf(f, "#define ASET_WITH_REFLECTION %d\n", any_reflects(scene) && depth > 1);
+    (void)fprintf(f, "#define ASET_WITH_REFLECTION %d\n", reflects && wish->depth > 1);
     (void)fprintf(f, "#define ASET_WITH_REFRACTION %d\n", any_transmits(scene));
     (void)fprintf(f, "#define ASET_WITH_APPROXIMATION %d\n", s->approx_kinds != 0);
 }
@@ -75,7 +77,8 @@ static void print_sizes(FILE *f, const aset_scene *scene, const plan_setting *s,
                   s->approx_kinds != 0 ? "ASET_BYTES_SUMMARY(PLAN_CELLS, PLAN_TEXTURES) + " : "");
 }
 
-bool plan_write_header(const char *path, const measured *m, const char *scene_path, const plan_setting *s, uint32_t depth) {
+bool plan_write_header(const char *path, const measured *m, const char *scene_path, const plan_setting *s,
+                       const plan_wish *wish) {
     tool_output output;
     if (!tool_output_open(&output, path)) {
         return false;
@@ -85,9 +88,9 @@ bool plan_write_header(const char *path, const measured *m, const char *scene_pa
     tool_print_in_comment(f, scene_path);
     (void)fputs("\n * Written by `aset plan --header`: compile the library and the program with -include of this file.\n */\n"
                 "#ifndef ASET_PLAN_HEADER\n#define ASET_PLAN_HEADER\n\n/* Only what the scene uses. */\n", f);
-    print_switches(f, &m->scene, s, depth);
+    print_switches(f, &m->scene, s, wish);
     (void)fputs("\n/* Exactly this scene and setting. */\n", f);
-    print_sizes(f, &m->scene, s, depth);
+    print_sizes(f, &m->scene, s, wish->depth);
     (void)fputs("\n#endif\n", f);
     if (ferror(f)) {
         tool_output_fail(&output, 0);

@@ -268,6 +268,7 @@ static double draw(const probing *q, const built *b, uint32_t kinds, uint32_t de
     tracer.curtail = (aset_real)q->wish->curtail;
     tracer.curtail_more = q->wish->curtail_more;
     tracer.depth = q->wish->depth;
+    tracer.spd_rules = q->wish->spd_rules;
     double start = cpu_seconds();
     for (uint32_t i = 0; limit < INFINITY && i < n; i += THIN) {
         draw_run(q, &tracer, i, rgb);

@@ -286,8 +286,7 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
         return false;
     }
     p->load_s = tool_seconds() - start;
-    /* the SPD's rule: opaque surfaces are one-sided, but not in a scene with patches (the teapot) */
-    source->one_sided_opaque = s->spd_rules && counter.counts.patches == 0;
+    tool_source_rules(source, s, &counter.counts);
     if (!take_block(p, s)) {
         return false;
     }

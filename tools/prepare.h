@@ -47,13 +47,15 @@ settings settings_default(void);
 /* Options that several commands have, for their tables of long ones: of how it is drawn, of models, of a scene's camera. */
 enum {
     SETTINGS_FROM = 1024, SETTINGS_AT, SETTINGS_UP, SETTINGS_ANGLE, SETTINGS_UP_AXIS, SETTINGS_GROUND, SETTINGS_SMOOTH,
-    SETTINGS_APPROX, SETTINGS_APPROX_DEPTH, SETTINGS_LEAF, SETTINGS_CURTAIL, SETTINGS_CURTAIL_WHEN, SETTINGS_SAMPLES, SETTINGS_DEPTH
+    SETTINGS_APPROX, SETTINGS_APPROX_DEPTH, SETTINGS_LEAF, SETTINGS_CURTAIL, SETTINGS_CURTAIL_WHEN, SETTINGS_SAMPLES, SETTINGS_DEPTH,
+    SETTINGS_RULES
 };
 #define SETTINGS_DRAWING_OPTIONS                                                                                       \
     {"approx", required_argument, NULL, SETTINGS_APPROX}, {"approx-depth", required_argument, NULL, SETTINGS_APPROX_DEPTH}, \
         {"leaf", required_argument, NULL, SETTINGS_LEAF}, {"curtail", required_argument, NULL, SETTINGS_CURTAIL},      \
         {"curtail-when", required_argument, NULL, SETTINGS_CURTAIL_WHEN},                                              \
-        {"samples", required_argument, NULL, SETTINGS_SAMPLES}, {"depth", required_argument, NULL, SETTINGS_DEPTH}
+        {"samples", required_argument, NULL, SETTINGS_SAMPLES}, {"depth", required_argument, NULL, SETTINGS_DEPTH},       \
+        {"rules", required_argument, NULL, SETTINGS_RULES}
 #define SETTINGS_MODEL_OPTIONS                                                                                         \
     {"up-axis", required_argument, NULL, SETTINGS_UP_AXIS}, {"ground", required_argument, NULL, SETTINGS_GROUND}
 #define SETTINGS_SMOOTH_OPTION {"smooth", no_argument, NULL, SETTINGS_SMOOTH}
@@ -62,6 +64,8 @@ enum {
         {"up", required_argument, NULL, SETTINGS_UP}, {"angle", required_argument, NULL, SETTINGS_ANGLE}
 /* Takes one of them, its value being in optarg. False: after an error line, or it is none of them. */
 bool settings_option(settings *s, int option);
+/* Do they go together? False after an error line. */
+bool settings_check(const settings *s);
 
 /* Kinds of rays as --approx takes them. */
 #define SETTINGS_KINDS_BYTES 48u
@@ -117,6 +121,8 @@ typedef struct tool_source {
 bool tool_source_open(tool_source *source, const char *path);
 /* What the settings say of models. */
 void tool_source_set(tool_source *source, const settings *s);
+/* What they say of sides, which depends on what was counted at the first reading. */
+void tool_source_rules(tool_source *source, const settings *s, const aset_counts *counts);
 /*
  * Reads it from the start into the sink. False after an error line that names the place. What is left out of a model is told
  * on standard error at the first reading.

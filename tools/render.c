@@ -55,7 +55,6 @@ enum {
     OPTION_OCTREE_DEPTH,
     OPTION_CELLS,
     OPTION_MEMORY,
-    OPTION_RULES,
     OPTION_ROWS,
     OPTION_TRANSPARENT,
     OPTION_STATS,
@@ -72,7 +71,6 @@ static const struct option longs[] = {
     SETTINGS_DRAWING_OPTIONS,
     {"memory", required_argument, NULL, OPTION_MEMORY},
     {"size", required_argument, NULL, 's'},
-    {"rules", required_argument, NULL, OPTION_RULES},
     {"rows", required_argument, NULL, OPTION_ROWS},
     {"threads", required_argument, NULL, 'j'},
     SETTINGS_CAMERA_OPTIONS,
@@ -108,8 +106,7 @@ static bool parse_method(request *r, const char *text) {
 }
 
 static bool parse_more(request *r, int option) {
-    static const tool_word cells[] = {{"flat", CELLS_FLAT}, {"normal", CELLS_NORMAL}, {"plane", CELLS_PLANE}, {NULL, 0}},
-                           rules[] = {{"spd", 1}, {"off", 0}, {NULL, 0}};
+    static const tool_word cells[] = {{"flat", CELLS_FLAT}, {"normal", CELLS_NORMAL}, {"plane", CELLS_PLANE}, {NULL, 0}};
     settings *s = &r->settings;
     unsigned word = 0;
     switch (option) {
@@ -119,12 +116,6 @@ static bool parse_more(request *r, int option) {
         }
         s->cells = (settings_cells)word;
         r->has_cells = true;
-        return true;
-    case OPTION_RULES:
-        if (!tool_parse_word("--rules", optarg, rules, &word)) {
-            return false;
-        }
-        s->spd_rules = word != 0;
         return true;
     case OPTION_ROWS: r->has_rows = true; return tool_parse_range("--rows", optarg, 65536, &r->first_row, &r->end_row);
     case OPTION_STATS: r->stats = optarg; return true;
@@ -181,8 +172,7 @@ static bool check_request(const request *r) {
         tool_error(NULL, 0, "--grid: too many divisions for a draft, expected at most %u, or --cells flat", ASET_BAKE_DIVISIONS_MAX);
         return false;
     }
-    if (s->spd_rules && s->samples > 1) {
-        tool_error(NULL, 0, "--rules: the SPD procedure has one ray a pixel corner, expected no --samples");
+    if (!settings_check(s)) {
         return false;
     }
     if (s->transparent && r->output != NULL && !r->is_png && tool_has_extension(r->output, ".ppm")) {

@@ -55,7 +55,7 @@ void settings_kinds(char text[SETTINGS_KINDS_BYTES], uint32_t kinds) {
 }
 
 static bool drawing_option(settings *s, int option) {
-    static const tool_word sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}};
+    static const tool_word sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}}, rules[] = {{"spd", 1}, {"off", 0}, {NULL, 0}};
     unsigned word = 0;
     switch (option) {
     case SETTINGS_APPROX:
@@ -78,6 +78,12 @@ static bool drawing_option(settings *s, int option) {
         return true;
     case SETTINGS_SAMPLES: return parse_samples(s, optarg);
     case SETTINGS_DEPTH: return tool_parse_count("--depth", optarg, 1, ASET_DEPTH_MAX, &s->depth);
+    case SETTINGS_RULES:
+        if (!tool_parse_word("--rules", optarg, rules, &word)) {
+            return false;
+        }
+        s->spd_rules = word != 0;
+        return true;
     default: return false;
     }
 }
@@ -101,6 +107,14 @@ bool settings_option(settings *s, int option) {
     case SETTINGS_SMOOTH: s->smooth = true; return true;
     default: return drawing_option(s, option);
     }
+}
+
+bool settings_check(const settings *s) {
+    if (s->spd_rules && s->samples > 1) {
+        tool_error(NULL, 0, "--rules: the SPD procedure has one ray a pixel corner, expected no --samples");
+        return false;
+    }
+    return true;
 }
 
 bool settings_view(aset_view *view, const settings *s, const char *path) {

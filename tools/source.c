@@ -302,6 +302,11 @@ void tool_source_set(tool_source *source, const settings *s) {
     source->stage.aspect = (aset_real)width / (aset_real)height;
 }
 
+/* The SPD's rule: opaque surfaces are one-sided, but not in a scene with patches (the teapot). */
+void tool_source_rules(tool_source *source, const settings *s, const aset_counts *counts) {
+    source->one_sided_opaque = s->spd_rules && counts->patches == 0;
+}
+
 bool tool_source_open(tool_source *source, const char *path) {
     tool_kind kind = tool_kind_of(path);
     memset(source, 0, sizeof *source);

@@ -27,7 +27,8 @@ static const char help[] =
     "      --cells LIST         what cells remember: flat (average textures), normal, plane (drafts); default flat,plane\n"
     "      --approx KINDS, --approx-depth L   approximate with these rays (default all) from that depth only; else as below\n"
     "      --curtail F, --curtail-when W      trapped rays, as for render; default 0.5 and not at all, less\n"
-    "      --leaf K, --samples N, --depth N   of all settings, as for render; default 1, 1, 5\n"
+    "      --leaf K, --samples N, --depth N, --rules spd   of all settings, as for render; default 1, 1, 5, off\n"
+    "      --memory BYTES       settings that need more (K = 1024, M) are left out, but exact ones: all is measured by them\n"
     "  -s, --sizes LIST         pictures, each WxH or N; default 256x256\n"
     "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   another camera than the scenes'\n"
     "      --up-axis y|z, --ground on|off, --smooth   of models, as for render\n"
@@ -50,7 +51,7 @@ static const char help[] =
     "by trying; with more memory a draft takes fewer passes over the scene. psnr, rmse, ssim, max_difference and differing\n"
     "compare with the exact picture of the same size, as aset compare does. best is 1 where no other row of that scene and\n"
     "size beats the setting: is as good in build_s + render_s, in peak_bytes and in rmse, and better in at least one; else\n"
-    "0.\n"
+    "0, as where it needs more than --memory.\n"
     "DIR/trade.html shows it all, with plots if gnuplot is there.\n"
     "\n"
     "An interrupted sweep leaves DIR/trade.csv.partial; the same words again go on from there.\n";
@@ -132,7 +133,7 @@ static bool parse_list(trade_words *w, const char *option, const char *text,
     return done;
 }
 
-enum { OPTION_GRIDS = 256, OPTION_DEPTHS, OPTION_CELLS, OPTION_ROUNDS, OPTION_QUICK };
+enum { OPTION_GRIDS = 256, OPTION_DEPTHS, OPTION_CELLS, OPTION_ROUNDS, OPTION_QUICK, OPTION_MEMORY };
 
 static bool parse_option(trade_words *w, int option) {
     switch (option) {
@@ -150,6 +151,7 @@ static bool parse_option(trade_words *w, int option) {
     case OPTION_CELLS: return parse_cells(w, optarg);
     case OPTION_ROUNDS: return tool_parse_count("--rounds", optarg, 1, ROUNDS_MAX, &w->rounds);
     case OPTION_QUICK: w->quick = true; return true;
+    case OPTION_MEMORY: w->has_memory = true; return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &w->settings.memory);
     case 'q': w->quiet = true; return true;
     case 'h': w->wants_help = true; return true;
     default: return settings_option(&w->settings, option);
@@ -188,6 +190,7 @@ static bool parse_words(trade_words *w, int argc, char **argv) {
         {"sizes", required_argument, NULL, 's'},
         {"rounds", required_argument, NULL, OPTION_ROUNDS},
         {"quick", no_argument, NULL, OPTION_QUICK},
+        {"memory", required_argument, NULL, OPTION_MEMORY},
         SETTINGS_DRAWING_OPTIONS,
         SETTINGS_CAMERA_OPTIONS,
         SETTINGS_MODEL_OPTIONS,
@@ -218,6 +221,9 @@ static bool parse_words(trade_words *w, int argc, char **argv) {
                 return false;
             }
         }
+    }
+    if (!settings_check(&w->settings)) {
+        return false;
     }
     w->directory = w->directory != NULL ? w->directory : "trade";
     w->rounds = w->rounds > 0 ? w->rounds : w->quick ? 1 : 3;
@@ -309,6 +315,9 @@ static bool write_all(trade *t) {
     }
     if (done && absent && !t->quiet) {
         (void)puts("no plots, for there is no gnuplot (Debian: gnuplot-nox)");
+    }
+    if (done && t->n_left_out > 0 && !t->quiet) {
+        (void)printf("%" PRIu32 " settings need more than %" PRIu64 " bytes and are left out\n", t->n_left_out, t->memory);
     }
     if (done && !t->quiet) {
         (void)printf("%s: %" PRIu32 " settings, %" PRIu32 " of them best, in trade.csv and trade.html\n", t->directory,

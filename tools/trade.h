@@ -32,8 +32,8 @@ typedef struct trade_words {
     unsigned cells;   /* bits, by settings_cells */
     uint32_t grids[TRADE_LIST_MAX][3], depths[TRADE_LIST_MAX], sizes[TRADE_LIST_MAX][2];
     uint32_t n_grids, n_depths, n_sizes, rounds;
-    settings settings; /* the camera, what models get, and how rays are followed */
-    bool quick, quiet, wants_help;
+    settings settings; /* the camera, what models get, how rays are followed, and the memory if has_memory */
+    bool has_memory, quick, quiet, wants_help;
 } trade_words;
 
 /* What every repetition of a setting gives alike. */
@@ -60,6 +60,7 @@ typedef struct trade_scene {
 typedef struct trade_group {
     trade_scene *scene;
     uint32_t width, height;
+    uint32_t columns, rows; /* of its pictures: one more each by the SPD's rules */
     aset_view view; /* a model's depends on the picture's shape */
     uint8_t *exact; /* the exact picture's pixels; NULL until one is needed */
     uint64_t base;  /* microseconds of the fastest exact MSET (without one: of the fastest exact setting) */
@@ -88,13 +89,14 @@ typedef struct trade {
     trade_scene *scenes;
     trade_group *groups;
     trade_setting *settings;
-    uint32_t n_scenes, n_groups, n_settings, rounds;
+    uint32_t n_scenes, n_groups, n_settings, n_left_out, rounds;
+    uint64_t memory; /* a setting that needs more is left out, unless it is exact */
     trade_approx approxes[TRADE_APPROXES];
     char given_kinds[SETTINGS_KINDS_BYTES], given_text[80];
     unsigned wanted; /* bits, by place in approxes; TRADE_EXACT always */
     double curtails[2];
     uint32_t n_curtails;
-    settings drawn;  /* depth, samples, leaf, which side is curtailed */
+    settings drawn;  /* depth, samples, leaf, which side is curtailed, rules */
     uint8_t *block; /* for the arenas of all settings, one after the other */
     FILE *partial;  /* open for appending */
     bool quiet;
@@ -112,6 +114,8 @@ void trade_free(trade *t);
 
 /* Whether no scene is held: the source goes straight into the baker, or into flat cells. */
 bool trade_is_streamed(const trade_setting *s);
+/* Bytes of the arena with which render draws it so. */
+uint64_t trade_peak(const trade_setting *s);
 /* Finds a draft's need by baking it. need holds what is needed without the draft before, and all of it afterwards. */
 bool trade_find_need(const trade *t, trade_setting *s);
 

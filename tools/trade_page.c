@@ -58,12 +58,12 @@ static void print_escaped(FILE *f, const char *text) {
 /* --- pictures --- */
 
 static bool write_picture(const char *path, const trade_group *group, const uint8_t *pixels) {
-    tool_picture *picture = tool_picture_open(path, group->width, group->height, 3);
+    tool_picture *picture = tool_picture_open(path, group->columns, group->rows, 3);
     if (picture == NULL) {
         return false;
     }
-    for (uint32_t y = 0; y < group->height; y++) {
-        if (!tool_picture_row(picture, pixels + (size_t)y * group->width * 3)) {
+    for (uint32_t y = 0; y < group->rows; y++) {
+        if (!tool_picture_row(picture, pixels + (size_t)y * group->columns * 3)) {
             tool_picture_abort(picture);
             return false;
         }
@@ -104,7 +104,7 @@ static bool print_picture(const trade *t, FILE *f, const trade_setting *s, unsig
     const trade_group *group = s->group;
     trade_figures figures;
     uint64_t build_us, render_us;
-    uint8_t *pixels = malloc((size_t)group->width * group->height * 3);
+    uint8_t *pixels = malloc((size_t)group->columns * group->rows * 3);
     bool is_drafted = s->cells != CELLS_FLAT;
     char *path =
         trade_path(t, "%td-%s-%" PRIu32 "x%" PRIu32 "-%u-%s%s%s.png", group - t->groups + 1, group->scene->label,
@@ -117,7 +117,7 @@ static bool print_picture(const trade *t, FILE *f, const trade_setting *s, unsig
     }
     if (done) {
         (void)fprintf(f, "<figure><img width=\"%" PRIu32 "\" height=\"%" PRIu32 "\" alt=\"%s\" src=\"data:image/png;base64,",
-                      group->width, group->height, s->rays->text);
+                      group->columns, group->rows, s->rays->text);
         done = print_base64(f, path);
         (void)fprintf(f, "\"><figcaption>%s%s: %s ", s->approx == TRADE_EXACT ? "" : "approximate ",
                       s->rays->text, aset_method_name(s->method));
@@ -263,6 +263,10 @@ bool trade_page(trade *t, char *const *plots) {
     }
     (void)fputs(head, output.stream);
     (void)fputs(reading, output.stream);
+    if (t->n_left_out > 0) {
+        (void)fprintf(output.stream, "<p>%" PRIu32 " settings need more than %" PRIu64 " bytes and are left out; exact ones are here all the "
+                      "same, for all is measured by them, but are not called best if they do.</p>\n", t->n_left_out, t->memory);
+    }
     for (uint32_t i = 0; done && i < t->n_groups; i++) {
         done = print_group(t, output.stream, &t->groups[i], plots + (size_t)i * TRADE_PLOTS);
     }

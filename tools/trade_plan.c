@@ -125,7 +125,8 @@ static uint64_t hash_look(uint64_t hash, const settings *s) {
                  {s->smooth, &s->smooth, sizeof s->smooth},     {s->depth != usual.depth, &s->depth, sizeof s->depth},
                  {s->samples != usual.samples, &s->samples, sizeof s->samples},
                  {s->leaf != usual.leaf, &s->leaf, sizeof s->leaf},
-                 {s->curtail_more, &s->curtail_more, sizeof s->curtail_more}};
+                 {s->curtail_more, &s->curtail_more, sizeof s->curtail_more},
+                 {s->spd_rules, &s->spd_rules, sizeof s->spd_rules}};
     for (uint32_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         if (parts[i].is_given) {
             hash = hash_bytes(hash_bytes(hash, &i, sizeof i), parts[i].value, parts[i].size);
@@ -148,7 +149,11 @@ static bool open_scene(trade_scene *scene, const char *name, const settings *s) 
     }
     tool_source_set(&scene->source, s);
     scene->hash = hash_look(hash_source(&scene->source), s);
-    if (!tool_source_read(&scene->source, &sink) || !measured_open(&scene->loaded, &scene->source, &counter.counts)) {
+    if (!tool_source_read(&scene->source, &sink)) {
+        return false;
+    }
+    tool_source_rules(&scene->source, s, &counter.counts);
+    if (!measured_open(&scene->loaded, &scene->source, &counter.counts)) {
         scene->loaded.block = NULL; /* given back already */
         return false;
     }
@@ -225,6 +230,20 @@ static trade_setting *add_setting(trade *t, trade_group *group, const aset_metho
     return s;
 }
 
+/* Takes the last one away again. */
+static void remove_setting(trade *t) {
+    memset(&t->settings[--t->n_settings], 0, sizeof *t->settings);
+}
+
+/* Leaves the last one out if it needs more than the memory. Exact ones stay: all is measured by them. */
+static void leave_out(trade *t) {
+    const trade_setting *s = &t->settings[t->n_settings - 1];
+    if (s->approx != TRADE_EXACT && trade_peak(s) > t->memory) {
+        remove_setting(t);
+        t->n_left_out++;
+    }
+}
+
 /* Another picture of the same draft: of another size, or with the cells' sides for their planes. */
 static const trade_setting *find_same_draft(const trade *t, const trade_setting *s) {
     for (const trade_setting *other = t->settings; other != s; other++) {
@@ -251,13 +270,13 @@ static bool plan_drafts(trade *t, const trade_words *w, trade_group *group, cons
             s->cells = (settings_cells)cells;
             bool is_streamed = trade_is_streamed(s);
             if (is_streamed && is_second) {
-                memset(s, 0, sizeof *s);
-                t->n_settings--;
+                remove_setting(t);
                 continue;
             }
             const trade_setting *same = find_same_draft(t, s);
             s->need = same != NULL ? same->need : ASET_BYTES_SCRATCH(t->drawn.depth) + (is_streamed ? 0 : size->total);
             done = same != NULL || trade_find_need(t, s);
+            leave_out(t);
         }
     }
     return done;
@@ -296,6 +315,7 @@ static bool plan_space(trade *t, const trade_words *w, trade_group *group, const
             s->curtail = t->curtails[c];
             size_t held = approx != TRADE_EXACT && built > size.total ? built : size.total;
             s->need = scratch + (trade_is_streamed(s) ? flat : held);
+            leave_out(t);
         }
     }
     return (method != &aset_mset && method != &aset_grid) || plan_drafts(t, w, group, method, &options, &size);
@@ -359,6 +379,7 @@ bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names) 
     t->rounds = w->rounds;
     t->quiet = w->quiet;
     t->drawn = w->settings;
+    t->memory = w->has_memory ? w->settings.memory : UINT64_MAX;
     t->curtails[0] = w->settings.curtail;
     t->n_curtails = w->settings.has_curtail ? 1 : 2; /* that and none at all */
     plan_approxes(t, &w->settings);
@@ -376,6 +397,8 @@ bool trade_plan(trade *t, const trade_words *w, char **names, uint32_t n_names) 
             group->scene = scene;
             group->width = w->sizes[k][0];
             group->height = w->sizes[k][1];
+            group->columns = group->width + w->settings.spd_rules;
+            group->rows = group->height + w->settings.spd_rules;
             if (!find_view(group, &w->settings) || !plan_group(t, w, group)) {
                 return false;
             }

@@ -37,6 +37,10 @@ bool trade_is_streamed(const trade_setting *s) {
     return tool_streams(s->method, s->rays->mask, s->rays->level);
 }
 
+uint64_t trade_peak(const trade_setting *s) {
+    return s->need + (trade_is_streamed(s) ? 0 : s->group->scene->loaded.scene_bytes);
+}
+
 /* One reading into the baker. */
 static aset_status bake_pass(drawing *d, tool_source *source, aset_baker *baker, bool *again) {
     tool_batch batch;
@@ -122,12 +126,13 @@ static aset_status render(const trade *t, const trade_setting *s, drawing *d, ui
     tracer.curtail_more = t->drawn.curtail_more;
     tracer.depth = t->drawn.depth;
     tracer.samples = t->drawn.samples;
+    tracer.spd_rules = t->drawn.spd_rules;
     view.width_px = picture.width = group->width;
     view.height_px = picture.height = group->height;
     picture.format = ASET_RGB888;
     picture.pixels = pixels;
-    picture.stride = (size_t)group->width * 3;
-    return aset_render_rows(&tracer, &view, &picture, 0, group->height, &d->scratch, statistics);
+    picture.stride = (size_t)group->columns * 3;
+    return aset_render_rows(&tracer, &view, &picture, 0, group->rows, &d->scratch, statistics);
 }
 
 /* A draft's need is the least that will do, but for this share of it: each halving of that costs one more bake. */
@@ -194,12 +199,12 @@ bool trade_draw(const trade *t, const trade_setting *s, uint8_t *pixels, trade_f
     figures->rays = n.primary + n.shadow + n.reflected + n.refracted;
     figures->tests = n.tests;
     figures->cells = n.cells_visited;
-    figures->peak = s->need + (trade_is_streamed(s) ? 0 : s->group->scene->loaded.scene_bytes);
+    figures->peak = trade_peak(s);
     return true;
 }
 
 static uint8_t *take_pixels(const trade_group *group) {
-    uint8_t *pixels = malloc((size_t)group->width * group->height * 3);
+    uint8_t *pixels = malloc((size_t)group->columns * group->rows * 3);
     if (pixels == NULL) {
         tool_error(group->scene->name, 0, "no memory for a picture");
     }
@@ -229,10 +234,10 @@ static double as_written(double value) {
 }
 
 static void find_error(const trade_group *group, const uint8_t *pixels, trade_figures *figures) {
-    metrics_difference d = metrics_differ(group->exact, pixels, group->width, group->height);
+    metrics_difference d = metrics_differ(group->exact, pixels, group->columns, group->rows);
     figures->psnr = as_written(metrics_psnr(&d));
     figures->rmse = as_written(metrics_rmse(&d));
-    figures->ssim = as_written(metrics_ssim(group->exact, pixels, group->width, group->height));
+    figures->ssim = as_written(metrics_ssim(group->exact, pixels, group->columns, group->rows));
     figures->max_difference = d.max_difference;
     figures->differing = as_written((double)d.n_differing / (double)d.n_pixels);
 }

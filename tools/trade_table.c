@@ -283,7 +283,7 @@ void trade_judge(trade *t) {
     for (uint32_t i = 0; i < t->n_settings; i++) {
         trade_setting *s = &t->settings[i];
         s->time = (double)trade_total(s) / (double)s->group->base;
-        s->best = true;
+        s->best = trade_peak(s) <= t->memory;
         for (uint32_t k = 0; k < t->n_settings && s->best; k++) {
             s->best = !beats(&t->settings[k], s);
         }
