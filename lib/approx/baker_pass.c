@@ -135,8 +135,8 @@ static aset_status give_up(aset_baker *b, size_t need) {
 /* Memory for one block in which every side is marked. */
 static size_t need_at_most(const aset_baker *b) {
     size_t sides = 64 * 6;
-    return fixed_bytes(b) + (sides + sides / 4 + 2 * BINS_MIN) * BYTES_PER_BIN(b) +
-           (size_t)b->n_counted * sizeof *b->raw;
+    return whole_bytes(fixed_bytes(b) + (sides + sides / 4 + 2 * BINS_MIN) * BYTES_PER_BIN(b) +
+                       (uint64_t)b->n_counted * sizeof *b->raw);
 }
 
 /* The most bytes that the region may take. */

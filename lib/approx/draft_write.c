@@ -218,7 +218,7 @@ static uint64_t count_words(const aset_baker *b, uint64_t n_facets, uint64_t n_s
 size_t aset_baker_words_bound(const aset_baker *b, uint64_t n_facets) {
     uint64_t words = count_words(b, n_facets, n_facets, n_facets < 65535 ? n_facets : 65535);
     uint64_t lists = n_facets * sizeof(uint32_t) + (n_facets < 65536 ? n_facets : 65536) * sizeof(uint32_t);
-    return (size_t)(b->after - b->region) + (size_t)(words * sizeof(uint32_t) + lists + n_facets * sizeof(uint64_t)) + 65536;
+    return whole_bytes((uint64_t)(b->after - b->region) + words * sizeof(uint32_t) + lists + n_facets * sizeof(uint64_t) + 65536);
 }
 
 static void write_vec(uint32_t *w, aset_vec3 x) {
