@@ -1366,6 +1366,41 @@ static void test_draft__layers_of_one_surface_share_a_shadow_ray(void **state) {
 }
 #endif
 
+#if ASET_WITH_POLYGONS && ASET_WITH_REFLECTION
+/* Where eye rays meet a draft and others the scene, these do not meet the surface that the facet stands for: nothing else is there. */
+static void test_draft__exact_rays_leave_the_facets_own_surface(void **state) {
+    (void)state;
+    static unsigned char pixels[SIDE * SIDE * 4];
+    random_state r = random_start(seed_of(390));
+    for (int i = 0; i < 20; i++) {
+        model m;
+        drawn d;
+        stage s;
+        aset_space space;
+        aset_statistics n = {0};
+        model_start(&m);
+        m.materials[0].specular = R(0.5);
+        model_rectangle(&m, dvec_real(dvec_make(-4, -4, random_between(&r, -2, 2))), dvec_real(dvec_make(8, 0, random_between(&r, -2, 2))),
+                        dvec_real(dvec_make(0, 8, random_between(&r, -2, 2))));
+        model_light(&m, dvec_real(dvec_make(1, 2, 40)));
+        bake(&d, &m, 16, 16, 16, true);
+        stage_open_model(&s, &m, ROOM);
+        stage_space(&s, &space, &aset_mset, 4, 4, 4);
+        aset_tracer tracer = stage_tracer(&s, &space);
+        tracer.draft = &d.draft;
+        tracer.approx_kinds = ASET_PRIMARY;
+        aset_view view = view_from(dvec_real(dvec_make(0.5, -1, 14)));
+        assert_int_equal(draw(pixels, SIDE, &tracer, &view, &n), ASET_OK);
+        check(n.shadow >= n.primary_hit && n.reflected > SIDE * SIDE / 4, "slope %d: too few rays", i);
+        check(n.shadow_hit == 0 && n.secondary_hit == 0, "slope %d: %" PRIu64 " of %" PRIu64 " shadow rays and %" PRIu64 " of %" PRIu64
+              " reflected ones meet it", i, n.shadow_hit, n.shadow, n.secondary_hit, n.reflected);
+        stage_close(&s);
+        drawn_close(&d);
+        model_free(&m);
+    }
+}
+#endif
+
 /* All objects kept: no facets, and still a draft, the same as the scene. */
 static void test_draft__all_kept(void **state) {
     (void)state;
@@ -1439,6 +1474,9 @@ int main(void) {
         cmocka_unit_test(test_draft__statistics),
 #if ASET_WITH_POLYGONS
         cmocka_unit_test(test_draft__layers_of_one_surface_share_a_shadow_ray),
+#endif
+#if ASET_WITH_POLYGONS && ASET_WITH_REFLECTION
+        cmocka_unit_test(test_draft__exact_rays_leave_the_facets_own_surface),
 #endif
         cmocka_unit_test(test_draft__all_kept),
     };

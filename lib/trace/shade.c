@@ -32,8 +32,13 @@ void aset_shading_make(shading *s, const aset_tracer *tracer, const query_hit *h
     s->known = s->dark = 0;
 }
 
-aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction, aset_real clearance) {
-    aset_real off = real_max(s->nudge, clearance);
+aset_vec3 aset_shade_start(const shading *s, aset_vec3 direction, bool approximate, aset_real share) {
+#if ASET_WITH_OBJECTS
+    share = approximate ? share : s->hit.object == ASET_NO_OBJECT ? SHADE_EXACT_SHARE : 0;
+#else
+    (void)approximate; /* always */
+#endif
+    aset_real off = real_max(s->nudge, share * s->clearance);
     return vec_along(s->hit.point, vec_dot(direction, s->facing) < 0 ? -off : off, s->facing);
 }
 
@@ -55,7 +60,7 @@ static bool in_shadow(const aset_tracer *tracer, shading *s, uint32_t light, con
         return (s->dark & bit) != 0;
     }
     bool approximate = aset_policy_approximate(tracer, ASET_SHADOW, depth);
-    aset_vec3 start = aset_shade_start(s, towards->direction, approximate ? SHADE_SHADOW_SHARE * s->clearance : 0);
+    aset_vec3 start = aset_shade_start(s, towards->direction, approximate, SHADE_SHADOW_SHARE);
     bool hit = aset_query_any(tracer, start, towards->direction, towards->distance, approximate,
                               last_before(tracer, s, light, towards), statistics);
     statistics->shadow++;

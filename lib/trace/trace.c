@@ -33,7 +33,7 @@ aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena 
 static void leave(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer, const shading *s, aset_vec3 direction,
                   aset_real weight, uint32_t depth, aset_kind kind) {
     aset_waiting *w = scratch->stack + (*n)++;
-    w->origin = aset_shade_start(s, direction, aset_policy_approximate(tracer, kind, depth) ? s->clearance : 0);
+    w->origin = aset_shade_start(s, direction, aset_policy_approximate(tracer, kind, depth), 1);
     w->direction = direction;
     w->weight = real_min(weight, REAL_MAX); /* by amounts above 1, again and again; infinity times black is no colour */
     w->depth = (uint16_t)depth;
