@@ -16,6 +16,9 @@ typedef draft_trial draft_try(void *context, uint64_t memory);
 /* Do trials take no time worth speaking of, with so many objects and divisions (0: automatic)? */
 bool tool_need_is_quick(uint64_t objects, const uint32_t divisions[3]);
 
+/* Between memory that is too little and such as is enough: the least that is, to an eighth. */
+uint64_t tool_narrow_draft_need(draft_try *attempt, void *context, uint64_t least, uint64_t enough);
+
 /*
  * The error line of a draft of what lies at path that had too little memory, by which missing bytes were missing: the need as trials
  * find it, of few passes over the source, or if they are quick of as many as it takes, to an eighth.

@@ -206,6 +206,13 @@ static aset_status fill_arena(prepared *p, const settings *s, tool_source *sourc
     return status == ASET_OK && p->is_drafted ? bake(p, s, source, told) : status;
 }
 
+static aset_status fill(prepared *p, const settings *s, tool_source *source, const aset_counter *counter, bool *told) {
+    p->counts = counter->counts;
+    p->is_drafted = approximates(s) && s->cells != CELLS_FLAT;
+    p->is_streamed = tool_streams(s->method, s->approx_kinds, s->approx_depth);
+    return p->is_streamed ? fill_streamed(p, s, source, counter, told) : fill_arena(p, s, source, &counter->counts, told);
+}
+
 /* The arena's block, and room for the threads' scratches. False after an error line. */
 static bool take_block(prepared *p, const settings *s) {
     p->block = malloc(s->memory > 0 ? (size_t)s->memory : 1);
@@ -220,7 +227,6 @@ static bool take_block(prepared *p, const settings *s) {
 
 /* What a draft is tried with, in more memory than it had. */
 typedef struct prepare_trial {
-    const prepared *prepared;
     const settings *settings;
     tool_source *source;
     const aset_counter *counter;
@@ -232,18 +238,21 @@ static draft_trial try_draft(void *context, uint64_t memory) {
     prepared more;
     settings rich = *of->settings;
     memset(&more, 0, sizeof more);
-    more.path = of->prepared->path;
-    more.is_drafted = true;
+    more.path = of->source->path;
     rich.memory = memory;
     t.told = !take_block(&more, &rich);
     if (!t.told) {
-        t.status = of->prepared->is_streamed ? fill_streamed(&more, &rich, of->source, of->counter, &t.told)
-                                             : fill_arena(&more, &rich, of->source, &of->counter->counts, &t.told);
+        t.status = fill(&more, &rich, of->source, of->counter, &t.told);
     }
     t.missing = more.arena.missing;
     t.peak = more.arena.peak;
     prepare_free(&more);
     return t;
+}
+
+uint64_t prepare_draft_need(const settings *s, tool_source *source, const aset_counter *counter) {
+    prepare_trial of = {s, source, counter};
+    return tool_narrow_draft_need(try_draft, &of, 0, s->memory);
 }
 
 /* Memory in which the need of a streamed flat picture is looked for, if that is enough. */
@@ -291,13 +300,9 @@ static bool prepare_from(prepared *p, const settings *s, tool_source *source) {
         return false;
     }
     bool told = false;
-    p->counts = counter.counts;
-    p->is_drafted = approximates(s) && s->cells != CELLS_FLAT;
-    p->is_streamed = tool_streams(s->method, s->approx_kinds, s->approx_depth);
-    aset_status status = p->is_streamed ? fill_streamed(p, s, source, &counter, &told)
-                                        : fill_arena(p, s, source, &counter.counts, &told);
+    aset_status status = fill(p, s, source, &counter, &told);
     if (status == ASET_ERR_NOMEM && p->is_drafted) {
-        prepare_trial of = {p, s, source, &counter};
+        prepare_trial of = {s, source, &counter};
         tool_tell_draft_need(try_draft, &of, source->path, s->memory, p->arena.missing,
                              tool_need_is_quick(counter.counts.objects, s->grid));
     } else if (status == ASET_ERR_NOMEM && p->is_streamed) {
@@ -420,6 +425,14 @@ static bool prepare_source(prepared *p, const settings *s) {
     return done;
 }
 
+/* What comes behind all else. */
+static void make_ready(prepared *p, const settings *s) {
+    choose_tracer(p, s);
+    double start = tool_seconds();
+    take_aids(p, s);
+    p->build_s += tool_seconds() - start;
+}
+
 bool prepare(prepared *p, const settings *s, const char *path) {
     memset(p, 0, sizeof *p);
     p->path = path;
@@ -427,11 +440,23 @@ bool prepare(prepared *p, const settings *s, const char *path) {
         prepare_free(p);
         return false;
     }
-    choose_tracer(p, s);
-    double start = tool_seconds();
-    take_aids(p, s);
-    p->build_s += tool_seconds() - start;
+    make_ready(p, s);
     return true;
+}
+
+aset_status prepare_again(prepared *p, const settings *s, tool_source *source, const aset_counter *counter, bool *told) {
+    memset(p, 0, sizeof *p);
+    p->path = source->path;
+    *told = !take_block(p, s);
+    aset_status status = *told ? ASET_ERR_NOMEM : fill(p, s, source, counter, told);
+    if (status == ASET_OK) {
+        *told = !choose_view(p, s);
+        status = *told ? ASET_ERR_GEOMETRY : ASET_OK;
+    }
+    if (status == ASET_OK) {
+        make_ready(p, s);
+    }
+    return status;
 }
 
 void prepare_free(prepared *p) {

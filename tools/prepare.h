@@ -215,6 +215,13 @@ bool measured_flat(const measured *m, const char *path, const aset_method *metho
 
 /* Loads, builds and sets up everything within settings->memory bytes. False after an error line; then nothing is held. */
 bool prepare(prepared *p, const settings *s, const char *path);
+/*
+ * The same of a source that was read before and counted. Not without words, told, but where memory is too little: ASET_ERR_NOMEM, or
+ * another status that was not told. p is to be freed whatever comes.
+ */
+aset_status prepare_again(prepared *p, const settings *s, tool_source *source, const aset_counter *counter, bool *told);
+/* Memory that is enough for a draft for which s->memory is, the least to an eighth. */
+uint64_t prepare_draft_need(const settings *s, tool_source *source, const aset_counter *counter);
 void prepare_free(prepared *p);
 
 #endif
