@@ -22,9 +22,9 @@ static ptrdiff_t read_file(void *context, void *buffer, size_t size) {
 }
 
 static int write_row(void *context, uint32_t y, const void *pixels) {
-    const aset_picture *picture = context;
+    const uint32_t *columns = context;
     (void)y;
-    return fwrite(pixels, 3, picture->width, stdout) != picture->width;
+    return fwrite(pixels, 3, *columns, stdout) != *columns;
 }
 
 static int fail(aset_status status) {
@@ -38,8 +38,10 @@ int main(int argc, char **argv) {
     static aset_space space;
     aset_scratch scratch;
     aset_load_report report;
-    aset_tracer tracer = {.scene = &scene, .space = &space, .depth = PLAN_DEPTH};
-    aset_picture picture = {.pixels = row, .on_row = write_row, .context = &picture};
+    aset_tracer tracer = {.scene = &scene, .space = &space, .depth = PLAN_DEPTH, .samples = PLAN_SAMPLES, .spd_rules = PLAN_SPD_RULES};
+    uint32_t columns, rows;
+    aset_picture picture = {.pixels = row, .on_row = write_row, .context = &columns};
+    const aset_load_options reading = {.one_sided_opaque = PLAN_SPD_RULES && !ASET_WITH_PATCHES};
     const aset_counts limits = {.objects = PLAN_OBJECTS, .coordinates = PLAN_COORDINATES, .materials = PLAN_MATERIALS,
                                 .lights = PLAN_LIGHTS};
     const aset_space_options options = {.divisions = {PLAN_DIVISIONS}};
@@ -51,7 +53,7 @@ int main(int argc, char **argv) {
     aset_status status = aset_arena_init(&arena, block, PLAN_BYTES);
     if (status == ASET_OK) status = aset_scene_init(&scene, &arena, &limits);
     aset_sink sink = aset_scene_sink(&scene);
-    if (status == ASET_OK) status = aset_load_nff(&sink, read_file, file, NULL, &report);
+    if (status == ASET_OK) status = aset_load_nff(&sink, read_file, file, &reading, &report);
     if (status == ASET_OK) status = aset_scratch_init(&scratch, PLAN_DEPTH, &arena);
     if (status == ASET_OK) status = aset_space_build(&space, &scene, &PLAN_METHOD, &options, &arena);
 #if ASET_WITH_APPROXIMATION
@@ -60,12 +62,15 @@ int main(int argc, char **argv) {
     tracer.summary = &summary;
     tracer.approx_kinds = PLAN_APPROX_KINDS;
     tracer.approx_depth = PLAN_APPROX_DEPTH;
-    tracer.curtail = (aset_real)0.5;
+    tracer.curtail = (aset_real)PLAN_CURTAIL;
+    tracer.curtail_more = PLAN_CURTAIL_MORE;
 #endif
     if (status != ASET_OK) return fail(status);
     picture.width = scene.view.width_px;
     picture.height = scene.view.height_px;
-    printf("P6\n%u %u\n255\n", (unsigned)picture.width, (unsigned)picture.height);
-    status = aset_render_rows(&tracer, &scene.view, &picture, 0, picture.height, &scratch, NULL);
+    columns = picture.width + PLAN_SPD_RULES;
+    rows = picture.height + PLAN_SPD_RULES;
+    printf("P6\n%u %u\n255\n", (unsigned)columns, (unsigned)rows);
+    status = aset_render_rows(&tracer, &scene.view, &picture, 0, rows, &scratch, NULL);
     return status == ASET_OK ? 0 : fail(status);
 }

@@ -18,24 +18,26 @@ check() { # name, command ...
     fi
 }
 value() { sed -n "s/.*\"$1\":\"\{0,1\}\([a-z0-9.x]*\).*/\1/p" "$dir/plan.json"; }
-try() { # scene, size, memory, further words of the plan
+# scene, size, memory, further words of the plan; $alike: words of the plan that render gets as well
+alike=
+try() {
     scene=$1
     size=$2
     memory=$((${3%K} * wide))${3//[0-9]/}
     shift 3
     if [ -f "$dir/$scene.nff" ]; then cat "$dir/$scene.nff"; else "$aset" scene "$scene" --size "$size"; fi |
         sed 's/^resolution .*/resolution 64 64/' > "$dir/scene.nff"
-    check "$scene-plans" "$aset" plan "$dir/scene.nff" --memory "$memory" --header "$dir/plan.h" --json "$@"
+    check "$scene-plans" "$aset" plan "$dir/scene.nff" --memory "$memory" --header "$dir/plan.h" --json $alike "$@"
     cp "$dir/log" "$dir/plan.json"
     value method >> "$dir/methods"
     check "$scene-compiles" "$cc" ${CPPFLAGS:-} -std=c99 -O1 -ffp-contract=off -include "$dir/plan.h" -Iinclude -Ilib examples/planned.c \
         lib/base/*.c lib/scene/*.c lib/space/*.c lib/approx/*.c lib/trace/*.c lib/load/*.c -lm -o "$dir/planned"
     check "$scene-runs" sh -c "'$dir/planned' '$dir/scene.nff' > '$dir/planned.ppm'"
     check "$scene-renders" "$aset" render "$dir/scene.nff" --method "$(value method)" --grid "$(value grid)" \
-        --approx "$(value approx)" --approx-depth "$(value approx_depth)" --memory "$(value bytes)" -o "$dir/render.ppm"
+        --approx "$(value approx)" --approx-depth "$(value approx_depth)" --memory "$(value bytes)" $alike -o "$dir/render.ppm"
     check "$scene-same-picture" cmp "$dir/planned.ppm" "$dir/render.ppm"
     if "$aset" render "$dir/scene.nff" --method "$(value method)" --grid "$(value grid)" --approx "$(value approx)" \
-        --approx-depth "$(value approx_depth)" --memory $(($(value bytes) - 1)) 2> /dev/null; then
+        --approx-depth "$(value approx_depth)" --memory $(($(value bytes) - 1)) $alike 2> /dev/null; then
         failed=$((failed + 1))
         echo "not ok $scene: one byte less than the plan's bytes is enough"
     else
@@ -47,6 +49,12 @@ try snow 1 60K --error 20
 try gears 2 256K
 try tree 6 256K -m set # which of equals is the fastest is for the clock to say
 try corridor - 50K
+try tetra 4 64K
+alike="--curtail 0 --samples 4 --depth 3"
+try snow 1 100K -m mset --grid 20 --approx all --approx-depth 1
+alike="--curtail 2 --curtail-when more --rules spd"
+try snow 1 100K -m mset --grid 20 --approx all --approx-depth 1
+alike=
 try tetra 4 64K
 # 5000 bytes hold no object of it: what is drawn is streamed, which a program with the header does not do
 check streamed-plans "$aset" plan "$dir/scene.nff" --memory 5000 --json

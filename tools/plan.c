@@ -17,6 +17,7 @@ static const char help[] =
     "                       (-: to standard output, instead of the plan)\n"
     "  -m, --method NAME, --grid N                       of mset, grid, set and brute this method alone; these divisions alone\n"
     "      --approx KINDS, --approx-depth L              with these rays (default all) approximate, and no others\n"
+    "      --cells plane|normal                          drafts, of all rays, instead of flat cells; see below\n"
     "      --curtail F, --curtail-when W, --samples N    as for render\n"
     "      --leaf K                                      refused: a plan has no octree, ARTS or EXCELL\n"
     "  -s, --size WxH|N     the picture; default the scene's, else 512x512\n"
@@ -33,7 +34,8 @@ static const char help[] =
     "exact picture by MSET at automatic divisions. Settings are MSET, grid and SET with up to 5 numbers of divisions each,\n"
     "more where none of them fits (then a large scene may take some seconds), and at last brute force; exact, and with\n"
     "--error or --time, or where nothing exact fits, also approximate in three ways, unless words say otherwise. Those that\n"
-    "fit are probed for about a second, the finest first. With --samples the error expected is that of one sample.\n";
+    "fit are probed for about a second, the finest first. With --samples the error expected is that of one sample. Models\n"
+    "in little memory are closest as drafts (--cells plane), whose bytes are enough and, of small models, the least to an eighth.\n";
 
 typedef struct request {
     plan_wish wish;
@@ -46,9 +48,10 @@ static void print_setting(const plan *p, const plan_setting *s) {
     char kinds[SETTINGS_KINDS_BYTES];
     settings_kinds(kinds, s->approx_kinds);
     (void)printf("--method %-4s --grid %" PRIu32 "x%" PRIu32 "x%" PRIu32 " --approx %-6s --approx-depth %" PRIu32
-                 ": %8zu bytes, %.2f of the exact time, ",
+                 "%s%s: %8zu bytes, %.2f of the exact time, ",
                  aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds,
-                 s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes, s->seconds / p->exact_seconds);
+                 s->approx_kinds == 0 ? 1 : s->approx_depth, s->cells != CELLS_FLAT ? " --cells " : "",
+                 s->cells != CELLS_FLAT ? settings_cells_names[s->cells] : "", s->bytes, s->seconds / p->exact_seconds);
     if (s->approx_kinds == 0) {
         (void)printf("exact%s\n", s->fits ? "" : ", does not fit");
     } else {
@@ -60,17 +63,18 @@ static void print_json(const plan *p, const plan_setting *s) {
     char kinds[SETTINGS_KINDS_BYTES];
     settings_kinds(kinds, s->approx_kinds);
     (void)printf("{\"method\":\"%s\",\"grid\":\"%" PRIu32 "x%" PRIu32 "x%" PRIu32
-                 "\",\"approx\":\"%s\",\"approx_depth\":%" PRIu32
+                 "\",\"approx\":\"%s\",\"approx_depth\":%" PRIu32 ",\"cells\":\"%s\""
                  ",\"bytes\":%zu,\"relative_time\":%.4f,\"seconds\":%.4f,\"psnr\":%.2f}\n",
                  aset_method_name(s->method), s->grid[0], s->grid[1], s->grid[2], kinds,
-                 s->approx_kinds == 0 ? 1 : s->approx_depth, s->bytes, s->seconds / p->exact_seconds, s->seconds, s->psnr);
+                 s->approx_kinds == 0 ? 1 : s->approx_depth, settings_cells_names[s->cells], s->bytes,
+                 s->seconds / p->exact_seconds, s->seconds, s->psnr);
 }
 
 static bool is_standard(const char *path) {
     return path != NULL && strcmp(path, "-") == 0;
 }
 
-static bool tell(const request *r, const plan *p, const measured *m) {
+static bool tell(const request *r, const plan *p, const measured *m, const plan_wish *wish) {
     void (*print)(const plan *p, const plan_setting *s) = r->json ? print_json : print_setting;
     for (int i = 0; i < p->n && r->all; i++) {
         print(p, &p->settings[i]);
@@ -91,14 +95,15 @@ static bool tell(const request *r, const plan *p, const measured *m) {
         return false;
     }
     if (s->psnr < r->wish.error_db) {
-        tool_error(r->scene, 0, "no setting within %" PRIu64 " bytes has %g dB, the best of those that were probed has about %.1f dB",
-                   r->wish.memory, r->wish.error_db, s->psnr);
+        bool may_draft = r->settings.cells == CELLS_FLAT && r->header == NULL && !r->settings.has_approx && !r->settings.has_approx_depth;
+        tool_error(r->scene, 0, "no setting within %" PRIu64 " bytes has %g dB, the best of those that were probed has about %.1f dB%s",
+                   r->wish.memory, r->wish.error_db, s->psnr, may_draft ? "; a draft may have (--cells plane)" : "");
         return false;
     }
     if (!is_standard(r->header)) {
         print(p, s);
     }
-    return r->header == NULL || plan_write_header(r->header, m, r->scene, s, &r->wish);
+    return r->header == NULL || plan_write_header(r->header, m, r->scene, s, wish);
 }
 
 static bool plan_from(const request *r, tool_source *source) {
@@ -119,6 +124,9 @@ static bool plan_from(const request *r, tool_source *source) {
     wish.samples = given->samples;
     wish.curtail = given->curtail;
     wish.curtail_more = given->curtail_more;
+    wish.cells = given->cells;
+    wish.given = given;
+    wish.source = source;
     memcpy(wish.grid, given->grid, sizeof wish.grid);
     wish.has_approx = given->has_approx || given->has_approx_depth;
     wish.approx_kinds = given->has_approx ? given->approx_kinds : ASET_ALL_KINDS;
@@ -126,7 +134,7 @@ static bool plan_from(const request *r, tool_source *source) {
     aset_view *view = &m.scene.view;
     wish.width = r->settings.width > 0 ? r->settings.width : view->width_px > 0 ? view->width_px : 512;
     wish.height = r->settings.height > 0 ? r->settings.height : view->height_px > 0 ? view->height_px : 512;
-    bool done = settings_view(view, &r->settings, r->scene) && plan_make(&p, &m, r->scene, &wish) && tell(r, &p, &m);
+    bool done = settings_view(view, &r->settings, r->scene) && plan_make(&p, &m, r->scene, &wish) && tell(r, &p, &m, &wish);
     free(m.block);
     return done;
 }
@@ -145,6 +153,7 @@ static bool parse_option(request *r, int option) {
     switch (option) {
     case 'm': return parse_method(w, optarg);
     case 'g': return tool_parse_grid("--grid", optarg, ASET_DIVISIONS_MAX, r->settings.grid);
+    case 'c': return settings_parse_cells(&r->settings, optarg);
     case 'q': return true;
     case 'M': return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &w->memory);
     case 'e': return tool_parse_real("--error", optarg, 1, 99, &w->error_db);
@@ -164,7 +173,7 @@ static bool parse_request(request *r, int argc, char **argv) {
         {"method", required_argument, NULL, 'm'}, {"grid", required_argument, NULL, 'g'},
         {"quiet", no_argument, NULL, 'q'},        SETTINGS_DRAWING_OPTIONS,
         {"time", required_argument, NULL, 't'},   {"header", required_argument, NULL, 'H'},
-        {"size", required_argument, NULL, 's'},
+        {"size", required_argument, NULL, 's'},   {"cells", required_argument, NULL, 'c'},
         {"all", no_argument, NULL, 'a'},          {"json", no_argument, NULL, 'j'},
         {"help", no_argument, NULL, 'h'},         SETTINGS_CAMERA_OPTIONS,
         SETTINGS_MODEL_OPTIONS,                   SETTINGS_SMOOTH_OPTION,
@@ -195,6 +204,14 @@ static bool parse_request(request *r, int argc, char **argv) {
         return false;
     }
     if (!settings_check(given)) {
+        return false;
+    }
+    if (given->cells != CELLS_FLAT && r->wish.method != NULL && r->wish.method != &aset_mset && r->wish.method != &aset_grid) {
+        tool_error(NULL, 0, "plan: --cells: only mset and grid have drafts, expected one of them, or flat cells");
+        return false;
+    }
+    if (given->cells != CELLS_FLAT && r->header != NULL) {
+        tool_error(NULL, 0, "plan: --cells: a header is of flat cells, expected no --header (a draft in C: aset bake -o FILE.h)");
         return false;
     }
     if (r->wish.error_db > 0 && r->wish.time_ms > 0) {

@@ -9,9 +9,11 @@ typedef struct plan_setting {
     const aset_method *method; /* MSET, grid, SET or brute force */
     uint32_t grid[3];          /* divisions; SET: at the most */
     uint32_t approx_kinds, approx_depth;
+    settings_cells cells; /* other than flat: a draft */
     uint32_t textures; /* in the summary's list; 0: exact */
     aset_space_size size;
-    size_t bytes;      /* of the arena, all told; with everything approximate of what `aset render` streams */
+    size_t bytes;      /* of the arena, all told; with everything approximate of what `aset render` streams; for a draft that
+                          is not chosen the plan's memory */
     double seconds;    /* expected for the whole picture, build included */
     double psnr;       /* expected, dB; METRICS_PSNR_MAX for exact */
     bool fits;
@@ -28,6 +30,9 @@ typedef struct plan_wish {
     uint32_t grid[3];                    /* 0: any */
     bool has_approx;                     /* these rays are approximate, and no others */
     uint32_t approx_kinds, approx_depth;
+    settings_cells cells; /* of what is approximate; other than flat: drafts */
+    const settings *given; /* of drafts: the rest that was said, */
+    tool_source *source;   /* and what they are made from */
     bool holds_scene; /* the bytes are those of a program that holds the scene, whatever is approximate */
 } plan_wish;
 

@@ -56,7 +56,7 @@ static void print_space(FILE *f, const plan_setting *s) {
     } /* brute force has no bytes of its own */
 }
 
-static void print_sizes(FILE *f, const aset_scene *scene, const plan_setting *s, uint32_t depth) {
+static void print_sizes(FILE *f, const aset_scene *scene, const plan_setting *s, const plan_wish *wish) {
     const aset_counts *c = &scene->counts;
     (void)fprintf(f, "#define PLAN_OBJECTS %" PRIu32 "\n#define PLAN_COORDINATES %" PRIu64 "\n", c->objects, c->coordinates);
     (void)fprintf(f, "#define PLAN_MATERIALS %" PRIu32 "\n#define PLAN_LIGHTS %" PRIu32 "\n", c->materials, c->lights);
@@ -65,9 +65,11 @@ static void print_sizes(FILE *f, const aset_scene *scene, const plan_setting *s,
     (void)fprintf(f, "#define PLAN_BLOCKS %" PRIu32 "\n", s->size.n_blocks);
     (void)fprintf(f, "#define PLAN_CELLS %" PRIu32 "\n#define PLAN_REFERENCES %" PRIu32 "\n", s->size.n_cells,
                   s->size.n_references);
-    (void)fprintf(f, "#define PLAN_TEXTURES %" PRIu32 "\n#define PLAN_DEPTH %" PRIu32 "\n", s->textures, depth);
+    (void)fprintf(f, "#define PLAN_TEXTURES %" PRIu32 "\n#define PLAN_DEPTH %" PRIu32 "\n", s->textures, wish->depth);
     (void)fprintf(f, "#define PLAN_APPROX_KINDS %" PRIu32 "\n#define PLAN_APPROX_DEPTH %" PRIu32 "\n", s->approx_kinds,
                   s->approx_depth);
+    (void)fprintf(f, "#define PLAN_CURTAIL %.9g\n#define PLAN_CURTAIL_MORE %d\n", wish->curtail, wish->curtail_more);
+    (void)fprintf(f, "#define PLAN_SAMPLES %" PRIu32 "\n#define PLAN_SPD_RULES %d\n", wish->samples, wish->spd_rules);
     (void)fprintf(f,
                   "\n/* The arena, to the byte: use it where aset/aset.h is included. */\n"
                   "#define PLAN_BYTES \\\n"
@@ -90,7 +92,7 @@ bool plan_write_header(const char *path, const measured *m, const char *scene_pa
                 "#ifndef ASET_PLAN_HEADER\n#define ASET_PLAN_HEADER\n\n/* Only what the scene uses. */\n", f);
     print_switches(f, &m->scene, s, wish);
     (void)fputs("\n/* Exactly this scene and setting. */\n", f);
-    print_sizes(f, &m->scene, s, wish->depth);
+    print_sizes(f, &m->scene, s, wish);
     (void)fputs("\n#endif\n", f);
     if (ferror(f)) {
         tool_output_fail(&output, 0);

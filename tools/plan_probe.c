@@ -6,23 +6,19 @@
  * draws the chosen setting and the unit of time, MSET exact at automatic divisions, by turns, round after round on new
  * pixels, until the time is used up. A setting that does not hold there what the coarse look promised gives way to the next.
  *
- * A sample is a set of runs of neighbouring pixels, one at a pseudo-random place in each tile of the picture: neighbours, for
- * what the caches hold is part of the time. The bytes are no estimate: measured. The error of an approximation is told
+ * The bytes are no estimate: measured. The error of an approximation is told
  * only where enough runs show one: a mirror that no run has met would pass for exact.
  */
 #include "metrics.h"
-#include "plan.h"
+#include "plan_draft.h"
+#include "plan_sample.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-#define RUN 4u              /* neighbouring pixels */
-#define RUNS_MAX 2048u      /* in a sample */
 #define COARSE_SECONDS 0.012 /* of the unit's drawing, for one sample */
 #define LONG_SECONDS 0.1     /* a candidate's coarse sample; if longer, a part of it has to do */
-#define THIN 8u
 #define FINE_SECONDS 0.05
 #define COARSE_RUNS 300u
 #define COARSE_END 0.9      /* wall clock since the start; after it no further candidate is probed once something fits */
@@ -36,12 +32,6 @@
 #define SET_MOST 160u        /* divisions of SET to begin with; its cells grow by their cube, and 100 slices pass for many */
 #define QUICK 4              /* times the unit: what nobody would draw by brute force */
 #define SLOWER 1.5          /* than a step before: no coarser divisions of this method, where time counts */
-
-/* What is measured is the processor's time: a busy machine makes everything wait, but computes no more. */
-static double cpu_seconds(void) {
-    struct timespec t;
-    return clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t) == 0 ? (double)t.tv_sec + 1e-9 * (double)t.tv_nsec : 0;
-}
 
 typedef struct level {
     uint32_t kinds, depth;
@@ -61,12 +51,6 @@ typedef struct built {
     double flat_s;                    /* to make that in just these bytes */
 } built;
 
-typedef struct sample {
-    uint32_t n_runs;
-    uint16_t x[RUNS_MAX], y[RUNS_MAX]; /* of each run's first pixel */
-    uint32_t run;                      /* pixels in each */
-} sample;
-
 typedef struct probing {
     measured *m;
     const plan_wish *wish;
@@ -76,18 +60,10 @@ typedef struct probing {
     level given;
     const level *levels;
     size_t n_levels;
-    aset_scratch scratch;
-    aset_vec3 forward, right, down; /* of the camera */
-    sample sample;
-    uint8_t exact[RUNS_MAX * RUN * 3], drawn[RUNS_MAX * RUN * 3];
+    plan_sample sample;
+    uint8_t exact[PLAN_SAMPLE_BYTES], drawn[PLAN_SAMPLE_BYTES];
     bool fine[PLAN_SETTINGS_MAX], refused[PLAN_SETTINGS_MAX];
 } probing;
-
-/* Sums over the runs of one or more samples: what the mean squared error is, and how sure. */
-typedef struct error_sums {
-    double squares, squares_of_runs;
-    uint64_t values;
-} error_sums;
 
 /* Approximate settings are asked for: by an error or a time, as nothing exact fits, or by name. */
 static bool wants_approximate(const plan *p, const plan_wish *wish) {
@@ -119,13 +95,13 @@ static bool build(built *b, const probing *q, const aset_method *method, const u
         bytes += ASET_BYTES_SUMMARY(b->size.n_cells, aset_summary_capacity(&q->m->scene));
     }
     b->block = malloc(bytes);
-    double start = cpu_seconds();
+    double start = plan_cpu_seconds();
     bool done = b->block != NULL && aset_arena_init(&arena, b->block, bytes) == ASET_OK &&
                 aset_space_build(&b->space, &q->m->scene, method, &options, &arena) == ASET_OK;
-    b->space_s = cpu_seconds() - start;
+    b->space_s = plan_cpu_seconds() - start;
     size_t before = done ? arena.used : 0;
     done = done && (!with_summary || aset_summary_build(&b->summary, &b->space, 0, &arena) == ASET_OK);
-    b->summary_s = cpu_seconds() - start - b->space_s;
+    b->summary_s = plan_cpu_seconds() - start - b->space_s;
     if (!done) {
         tool_error(q->path, 0, "plan: the machine has no memory for %u divisions", (unsigned)grid[0]);
         free(b->block);
@@ -161,104 +137,16 @@ static bool measure_flat(built *b, const probing *q, const aset_method *method, 
     if (!measured_flat(q->m, q->path, method, &options, &b->flat_bytes)) {
         return false;
     }
-    double start = cpu_seconds();
+    double start = plan_cpu_seconds();
     bool done = measured_flat(q->m, q->path, method, &options, &b->flat_bytes);
-    b->flat_s = cpu_seconds() - start;
+    b->flat_s = plan_cpu_seconds() - start;
     b->flat_bytes += ASET_BYTES_SCRATCH(q->wish->depth);
     return done;
 }
 
-/* --- pixels --- */
-
-static aset_vec3 combine(aset_vec3 a, double s, aset_vec3 b, double t) {
-    aset_vec3 c = {(aset_real)(s * a.x + t * b.x), (aset_real)(s * a.y + t * b.y), (aset_real)(s * a.z + t * b.z)};
-    return c;
-}
-
-static aset_vec3 unit(aset_vec3 a) {
-    double length = sqrt((double)a.x * a.x + (double)a.y * a.y + (double)a.z * a.z);
-    return combine(a, 1 / length, a, 0);
-}
-
-static aset_vec3 cross(aset_vec3 a, aset_vec3 b) {
-    aset_vec3 c = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-    return c;
-}
-
-static void aim(probing *q) {
-    const aset_view *v = &q->m->scene.view;
-    double half = v->height > 0 ? 0.5 * v->height : tan(v->angle_deg * (3.14159265358979323846 / 360));
-    double wide = half * q->wish->width / q->wish->height;
-    q->forward = unit(combine(v->at, 1, v->from, -1));
-    aset_vec3 right = unit(cross(q->forward, unit(v->up))), down = cross(q->forward, right);
-    q->right = combine(right, wide, right, 0);
-    q->down = combine(down, half, down, 0);
-}
-
-/* The ray through a pixel's centre. */
-static aset_ray ray_of(const probing *q, uint32_t x, uint32_t y) {
-    const aset_view *v = &q->m->scene.view;
-    aset_vec3 across = combine(q->right, (2 * x + 1.0) / q->wish->width - 1, q->down, (2 * y + 1.0) / q->wish->height - 1);
-    aset_ray ray;
-    ray.origin = v->height > 0 ? combine(v->from, 1, across, 1) : v->from;
-    ray.direction = v->height > 0 ? q->forward : unit(combine(q->forward, 1, across, 1));
-    ray.t_max = INFINITY;
-    return ray;
-}
-
-/* A pseudo-random number below n: Lehmer's generator with Park and Miller's multiplier (1988), its upper bits. */
-static uint32_t draw_number(uint32_t *state, uint32_t n) {
-    *state = (uint32_t)((uint64_t)*state * 16807u % 2147483647u);
-    return (uint32_t)((uint64_t)*state * n / 2147483647u);
-}
-
-/* About n runs (one at least), one in each tile. */
-static void sample_make(probing *q, uint32_t n, uint32_t seed) {
-    sample *s = &q->sample;
-    double width = q->wish->width, height = q->wish->height;
-    s->run = q->wish->width < RUN ? q->wish->width : RUN;
-    n = n < 1 ? 1 : n > RUNS_MAX ? RUNS_MAX : n;
-    double side = sqrt(width * height / n); /* of a tile, as square as may be, and at least one run of pixels */
-    uint32_t columns = (uint32_t)fmax(1, fmin(fmin(n, floor(width / s->run)), floor(width / side)));
-    uint32_t rows = (uint32_t)fmax(1, fmin(height, n / columns));
-    uint32_t state = 1 + seed * 7919u;
-    s->n_runs = 0;
-    for (uint32_t j = 0; j < rows; j++) {
-        for (uint32_t i = 0; i < columns && s->n_runs < RUNS_MAX; i++) {
-            uint32_t x = (uint32_t)((uint64_t)i * q->wish->width / columns);
-            uint32_t y = (uint32_t)((uint64_t)j * q->wish->height / rows);
-            uint32_t x_end = (uint32_t)((uint64_t)(i + 1) * q->wish->width / columns);
-            uint32_t y_end = (uint32_t)((uint64_t)(j + 1) * q->wish->height / rows);
-            s->x[s->n_runs] = (uint16_t)(x + draw_number(&state, x_end - x - s->run + 1));
-            s->y[s->n_runs++] = (uint16_t)(y + draw_number(&state, y_end - y));
-        }
-    }
-}
-
-static uint8_t to_byte(aset_real x) {
-    return (uint8_t)((x > 0 ? (x < 1 ? x : 1) : 0) * 255 + (aset_real)0.5);
-}
-
-static void draw_run(const probing *q, const aset_tracer *tracer, uint32_t i, uint8_t *rgb) {
-    const sample *s = &q->sample;
-    aset_statistics ignored;
-    memset(&ignored, 0, sizeof ignored);
-    rgb += (size_t)i * s->run * 3;
-    for (uint32_t k = 0; k < s->run; k++, rgb += 3) {
-        aset_colour c = {0, 0, 0};
-        aset_scratch scratch = q->scratch;
-        aset_ray ray = ray_of(q, s->x[i] + k, s->y[i]);
-        (void)aset_ray_colour(&c, tracer, &ray, &scratch, &ignored); /* what it takes was checked by the loader */
-        rgb[0] = to_byte(c.r);
-        rgb[1] = to_byte(c.g);
-        rgb[2] = to_byte(c.b);
-    }
-}
-
-/* Draws the sample. Seconds; if one run of THIN says that it would take longer than limit, what all would take. */
-static double draw(const probing *q, const built *b, uint32_t kinds, uint32_t depth, double limit, uint8_t *rgb) {
+/* The tracer for one level over what was built. */
+static aset_tracer tracer_of(const probing *q, const built *b, uint32_t kinds, uint32_t depth) {
     aset_tracer tracer;
-    uint32_t n = q->sample.n_runs;
     memset(&tracer, 0, sizeof tracer);
     tracer.scene = &q->m->scene;
     tracer.space = &b->space;
@@ -269,59 +157,17 @@ static double draw(const probing *q, const built *b, uint32_t kinds, uint32_t de
     tracer.curtail_more = q->wish->curtail_more;
     tracer.depth = q->wish->depth;
     tracer.spd_rules = q->wish->spd_rules;
-    double start = cpu_seconds();
-    for (uint32_t i = 0; limit < INFINITY && i < n; i += THIN) {
-        draw_run(q, &tracer, i, rgb);
-    }
-    double all = (cpu_seconds() - start) * n / ((n + THIN - 1) / THIN);
-    if (limit < INFINITY && all > limit) {
-        return all;
-    }
-    for (uint32_t i = 0; i < n; i++) {
-        if (limit >= INFINITY || i % THIN != 0) {
-            draw_run(q, &tracer, i, rgb);
-        }
-    }
-    return cpu_seconds() - start;
+    return tracer;
 }
 
-static void add_errors(error_sums *e, const probing *q) {
-    uint32_t n = q->sample.run * 3;
-    for (uint32_t i = 0; i < q->sample.n_runs; i++) {
-        double run = 0;
-        for (uint32_t k = i * n; k < (i + 1) * n; k++) {
-            double d = (double)q->exact[k] - q->drawn[k];
-            run += d * d;
-        }
-        e->squares += run;
-        e->squares_of_runs += run * run;
-        e->values += n;
-    }
-}
-
-static double psnr_of(const error_sums *e) {
-    double psnr = e->squares > 0 ? 10 * log10(255.0 * 255.0 * (double)e->values / e->squares) : METRICS_PSNR_MAX;
-    return psnr < METRICS_PSNR_MAX ? psnr : METRICS_PSNR_MAX;
-}
-
-/* Relative standard error of the mean square; no bound where nothing differs. */
-static double doubt_of(const error_sums *e) {
-    return e->squares > 0 ? sqrt(e->squares_of_runs) / e->squares : INFINITY;
+static double draw(const probing *q, const built *b, uint32_t kinds, uint32_t depth, double limit, uint8_t *rgb) {
+    aset_tracer tracer = tracer_of(q, b, kinds, depth);
+    return plan_sample_draw(&q->sample, &tracer, limit, rgb);
 }
 
 /* As many as there are eye rays. */
 static double pixels(const probing *q) {
     return (double)q->wish->width * q->wish->height * q->wish->samples * q->wish->samples;
-}
-
-static double sample_pixels(const probing *q) {
-    return (double)q->sample.n_runs * q->sample.run;
-}
-
-/* Runs that take about so long at so many seconds a pixel; a few at least. */
-static uint32_t runs_within(double seconds, double rate, uint32_t fewest) {
-    double n = seconds / (rate * RUN + 1e-12);
-    return n < fewest ? fewest : n > RUNS_MAX ? RUNS_MAX : (uint32_t)n;
 }
 
 /* --- the coarse look --- */
@@ -331,7 +177,7 @@ static void probe_levels(plan *p, probing *q, const built *b, const aset_method 
                          size_t n_levels) {
     for (size_t i = 0; i < n_levels && p->n < PLAN_SETTINGS_MAX; i++) {
         plan_setting *s = &p->settings[p->n];
-        error_sums e = {0, 0, 0};
+        plan_errors e = {0, 0, 0};
         const level *l = &q->levels[i];
         double seconds = draw(q, b, l->kinds, l->depth, LONG_SECONDS, q->drawn);
         memset(s, 0, sizeof *s);
@@ -344,12 +190,12 @@ static void probe_levels(plan *p, probing *q, const built *b, const aset_method 
         s->bytes = is_streamed(b, method, s->approx_kinds, s->approx_depth)
                        ? b->flat_bytes
                        : bytes_of(q, &b->size, l->kinds == 0 ? 0 : b->summary_bytes);
-        s->seconds = build_seconds(b, method, s->approx_kinds, s->approx_depth) + seconds * pixels(q) / sample_pixels(q);
+        s->seconds = build_seconds(b, method, s->approx_kinds, s->approx_depth) + seconds * pixels(q) / plan_sample_pixels(&q->sample);
         s->psnr = METRICS_PSNR_MAX;
         s->fits = s->bytes <= q->wish->memory;
         if (l->kinds != 0) {
-            add_errors(&e, q);
-            s->psnr = psnr_of(&e);
+            plan_errors_add(&e, &q->sample, q->exact, q->drawn);
+            s->psnr = plan_errors_psnr(&e);
             /* not drawn to the end, or not seen to differ: its error is not known, which matters only if there is a choice */
             q->refused[p->n] =
                 (seconds > LONG_SECONDS || e.squares <= 0) && p->exact_bytes <= q->wish->memory && !q->wish->has_approx;
@@ -387,7 +233,7 @@ static bool any_exact_quick(const plan *p) {
 static bool probe(plan *p, probing *q, const aset_method *method, const uint32_t grid[3]) {
     built b;
     aset_space_options options = options_of(grid);
-    bool approximate = wants_approximate(p, q->wish) && method != &aset_brute;
+    bool approximate = wants_approximate(p, q->wish) && method != &aset_brute && q->wish->cells == CELLS_FLAT;
     if (!measured_space(q->m, q->path, method, &options, &b.size, NULL)) {
         return false;
     }
@@ -428,6 +274,61 @@ static bool step_down(const measured *m, int step, const aset_method *method, ui
     return largest * scale >= 1.5 || step == 0;
 }
 
+/* --- drafts --- */
+
+/* All rays, unless it is given which. */
+static const level usual_draft_levels[] = {{ASET_ALL_KINDS, 0}};
+
+/*
+ * A draft at the setting's divisions, or automatic ones, which are put there. False after an error line; if it does not fit, it is not
+ * among the plan's settings.
+ */
+static bool probe_draft(plan *p, probing *q, plan_setting *s) {
+    prepared made;
+    plan_errors e = {0, 0, 0};
+    bool told = false, done = true;
+    s->bytes = (size_t)q->wish->memory;
+    aset_status status = plan_draft_make(&made, q->m, q->wish, s, &told);
+    if (status == ASET_OK) {
+        double seconds = plan_draft_seconds(&made, q->wish);
+        done = seconds >= 0;
+        (void)plan_sample_draw(&q->sample, &made.tracer, INFINITY, q->drawn);
+        plan_errors_add(&e, &q->sample, q->exact, q->drawn);
+        memcpy(s->grid, made.draft.n, sizeof s->grid);
+        s->seconds = made.build_s + seconds * q->wish->samples * q->wish->samples;
+        s->psnr = plan_errors_psnr(&e);
+        s->fits = true;
+        q->refused[p->n] = e.squares <= 0 && p->exact_bytes <= q->wish->memory && !q->wish->has_approx;
+        p->settings[p->n++] = *s;
+    }
+    prepare_free(&made);
+    return done && !told;
+}
+
+/* As fine as fits, and steps down from there. */
+static bool probe_drafts(plan *p, probing *q) {
+    const plan_wish *wish = q->wish;
+    const level *levels = q->levels == &q->given ? &q->given : usual_draft_levels;
+    plan_setting s;
+    memset(&s, 0, sizeof s);
+    s.method = wish->method != NULL ? wish->method : &aset_mset;
+    s.approx_kinds = levels->kinds;
+    s.approx_depth = levels->depth;
+    s.cells = wish->cells;
+    memcpy(s.grid, wish->grid, sizeof s.grid);
+    int first = p->n;
+    bool done = probe_draft(p, q, &s);
+    for (uint32_t most = 2; done && p->n > first && wish->grid[0] == 0 && most > 1 && p->n < PLAN_SETTINGS_MAX && elapsed(q) < COARSE_END;) {
+        most = 1;
+        for (int a = 0; a < 3; a++) {
+            s.grid[a] = (uint32_t)fmax(1, s.grid[a] * STEP + 0.5);
+            most = s.grid[a] > most ? s.grid[a] : most;
+        }
+        done = probe_draft(p, q, &s);
+    }
+    return done;
+}
+
 /* The unit of time, kept for the fine look, and the coarse sample with its exact colours, as large as the time allows. */
 static bool probe_unit(plan *p, probing *q) {
     uint32_t grid[3];
@@ -437,11 +338,11 @@ static bool probe_unit(plan *p, probing *q) {
         !build(&q->unit, q, &aset_mset, grid, false)) {
         return false;
     }
-    sample_make(q, 64, 1);
-    q->unit_rate = draw(q, &q->unit, 0, 0, INFINITY, q->exact) / sample_pixels(q);
-    uint32_t n = runs_within(COARSE_SECONDS, q->unit_rate, 64);
-    sample_make(q, n < COARSE_RUNS ? n : COARSE_RUNS, 2);
-    q->unit_rate = draw(q, &q->unit, 0, 0, INFINITY, q->exact) / sample_pixels(q);
+    plan_sample_make(&q->sample, 64, 1);
+    q->unit_rate = draw(q, &q->unit, 0, 0, INFINITY, q->exact) / plan_sample_pixels(&q->sample);
+    uint32_t n = plan_sample_runs(COARSE_SECONDS, q->unit_rate, 64);
+    plan_sample_make(&q->sample, n < COARSE_RUNS ? n : COARSE_RUNS, 2);
+    q->unit_rate = draw(q, &q->unit, 0, 0, INFINITY, q->exact) / plan_sample_pixels(&q->sample);
     p->exact_seconds = q->unit.space_s + q->unit_rate * pixels(q);
     return true;
 }
@@ -452,7 +353,8 @@ static const aset_method *const methods[] = {&aset_mset, &aset_grid, &aset_set};
 /* One step of one method. *last: seconds of its step before, exact, 0 where none fitted; below 0: it only gets slower. */
 static bool probe_step(plan *p, probing *q, const aset_method *method, const uint32_t grid[3], double *last) {
     int first = p->n;
-    if (any_fits(p, q->wish) && (*last < 0 || elapsed(q) > COARSE_END)) {
+    bool time_counts = p->exact_bytes <= q->wish->memory || q->wish->time_ms > 0;
+    if (any_fits(p, q->wish) && ((*last < 0 && time_counts) || elapsed(q) > COARSE_END)) {
         return true;
     }
     if (!probe(p, q, method, grid)) {
@@ -486,11 +388,15 @@ static bool wants_brute(const plan *p, const probing *q) {
 }
 
 static bool probe_all(plan *p, probing *q) {
+    if (q->wish->cells != CELLS_FLAT && wants_approximate(p, q->wish) && !probe_drafts(p, q)) {
+        return false;
+    }
     const uint32_t one[3] = {1, 1, 1};
     double last[N_METHODS] = {0};
     uint32_t grid[3];
     bool more = true;
-    for (int i = 0; more && (i < STEPS || !any_fits(p, q->wish)); i++) {
+    bool all_steps = p->exact_bytes > q->wish->memory; /* of what is approximate coarser may be closer */
+    for (int i = 0; more && (i < STEPS || all_steps || !any_fits(p, q->wish)); i++) {
         more = false;
         for (size_t k = 0; k < N_METHODS; k++) {
             if (choose_divisions(q, i, methods[k], grid)) {
@@ -612,31 +518,68 @@ static void settle(plan *p, probing *q, int chosen, const built *b, const pair *
 static bool refine(plan *p, probing *q, int chosen, double end, bool first) {
     plan_setting *s = &p->settings[chosen];
     pair sum = {0, 0}, rate;
-    error_sums e = {0, 0, 0};
+    plan_errors e = {0, 0, 0};
     double drawn = 0, limit = least(PIXELS_MAX, 2 * pixels(q)), now = 0, before;
     built b;
     if (!build_pair(q, &b, s)) {
         return false;
     }
-    uint32_t seed = 3, n = runs_within(FINE_SECONDS, fmax(q->unit_rate, s->seconds / pixels(q)), 16);
+    uint32_t seed = 3, n = plan_sample_runs(FINE_SECONDS, fmax(q->unit_rate, s->seconds / pixels(q)), 16);
     do {
         before = elapsed(q);
-        sample_make(q, n, seed++);
+        plan_sample_make(&q->sample, n, seed++);
         pair t = draw_pair(q, &b, s);
         sum.unit += t.unit;
         sum.other += t.other;
-        drawn += sample_pixels(q);
-        add_errors(&e, q);
+        drawn += plan_sample_pixels(&q->sample);
+        plan_errors_add(&e, &q->sample, q->exact, q->drawn);
         now = elapsed(q);
     } while (2 * now - before < end && drawn < limit);
     rate.unit = sum.unit / drawn;
     rate.other = sum.other / drawn;
     settle(p, q, chosen, &b, &rate, first);
     if (s->approx_kinds != 0) {
-        s->psnr = psnr_of(&e);
-        q->refused[chosen] = !(doubt_of(&e) <= DOUBT_MAX) && sample_pixels(q) < pixels(q) && !q->wish->has_approx;
+        s->psnr = plan_errors_psnr(&e);
+        q->refused[chosen] = !(plan_errors_doubt(&e) <= DOUBT_MAX) && plan_sample_pixels(&q->sample) < pixels(q) && !q->wish->has_approx;
     }
     free(b.block);
+    return true;
+}
+
+/*
+ * Its error may be twice its doubt larger and still keep to what is asked for. Few pixels of a draft err much, so that it is told late how
+ * much they do.
+ */
+static bool is_surely_close(const plan_setting *s, const plan_errors *e, const plan_wish *wish) {
+    return wish->error_db > 0 && s->psnr - 10 * log10(1 + 2 * plan_errors_doubt(e)) >= wish->error_db;
+}
+
+/* A draft again, of the divisions that were found, on new pixels beside the exact picture. Its time stays. */
+static bool refine_draft(plan *p, probing *q, int chosen, double end) {
+    plan_setting *s = &p->settings[chosen];
+    prepared made;
+    plan_errors e = {0, 0, 0};
+    double drawn = 0, limit = least(PIXELS_MAX, 2 * pixels(q)), now = 0, before;
+    bool told;
+    q->fine[chosen] = true;
+    s->fits = plan_draft_make(&made, q->m, q->wish, s, &told) == ASET_OK;
+    if (!s->fits) {
+        prepare_free(&made);
+        return !told;
+    }
+    uint32_t seed = 3, n = plan_sample_runs(FINE_SECONDS, fmax(q->unit_rate, s->seconds / pixels(q)), 16);
+    do {
+        before = elapsed(q);
+        plan_sample_make(&q->sample, n, seed++);
+        (void)draw(q, &q->unit, 0, 0, INFINITY, q->exact);
+        (void)plan_sample_draw(&q->sample, &made.tracer, INFINITY, q->drawn);
+        drawn += plan_sample_pixels(&q->sample);
+        plan_errors_add(&e, &q->sample, q->exact, q->drawn);
+        now = elapsed(q);
+    } while (2 * now - before < end && drawn < limit);
+    s->psnr = plan_errors_psnr(&e);
+    q->refused[chosen] = !(plan_errors_doubt(&e) <= DOUBT_MAX) && drawn < pixels(q) && !q->wish->has_approx && !is_surely_close(s, &e, q->wish);
+    prepare_free(&made);
     return true;
 }
 
@@ -646,10 +589,12 @@ static bool refine_best(plan *p, probing *q) {
     int best = choose(p, q, false);
     while (best >= 0 && !q->fine[best]) {
         double now = elapsed(q);
-        if (!refine(p, q, best, now + (FINE_END - now) / 2, first)) {
+        double end = now + (FINE_END - now) / 2;
+        bool is_draft = p->settings[best].cells != CELLS_FLAT;
+        if (!(is_draft ? refine_draft(p, q, best, end) : refine(p, q, best, end, first))) {
             return false;
         }
-        first = false;
+        first = first && is_draft;
         bool late = elapsed(q) > FINE_END;
         best = choose(p, q, true);
         if (late && best >= 0 && (q->wish->error_db <= 0 || accurate(&p->settings[best], q->wish))) {
@@ -661,6 +606,10 @@ static bool refine_best(plan *p, probing *q) {
         best = choose(p, q, false);
     }
     p->chosen = choose(p, q, true);
+    if (p->chosen >= 0 && p->settings[p->chosen].cells != CELLS_FLAT) {
+        plan_setting *s = &p->settings[p->chosen];
+        s->bytes = plan_draft_need(q->m, q->wish, s);
+    }
     return true;
 }
 
@@ -683,9 +632,9 @@ bool plan_make(plan *p, measured *m, const char *path, const plan_wish *wish) {
         q->levels = wish->has_approx && wish->approx_kinds != 0 ? &q->given : usual_levels;
         q->n_levels = q->levels == &q->given ? 1 : sizeof usual_levels / sizeof usual_levels[0];
         q->start = tool_seconds();
-        q->scratch.stack = stack;
-        q->scratch.capacity = wish->depth;
-        aim(q);
+        q->sample.scratch.stack = stack;
+        q->sample.scratch.capacity = wish->depth;
+        plan_sample_aim(&q->sample, &m->scene.view, wish->width, wish->height);
         done = probe_unit(p, q) && probe_all(p, q) && refine_best(p, q);
         free(q->unit.block);
     }

@@ -12,6 +12,8 @@
 
 /* What an approximate cell remembers. */
 typedef enum settings_cells { CELLS_FLAT, CELLS_NORMAL, CELLS_PLANE } settings_cells;
+enum { SETTINGS_CELLS = 3 };
+extern const char *const settings_cells_names[SETTINGS_CELLS];
 
 /* The options of `aset render`; settings_default gives the defaults. */
 typedef struct settings {
@@ -64,6 +66,8 @@ enum {
         {"up", required_argument, NULL, SETTINGS_UP}, {"angle", required_argument, NULL, SETTINGS_ANGLE}
 /* Takes one of them, its value being in optarg. False: after an error line, or it is none of them. */
 bool settings_option(settings *s, int option);
+/* The words flat, normal and plane. False after an error line. */
+bool settings_parse_cells(settings *s, const char *text);
 /* Do they go together? False after an error line. */
 bool settings_check(const settings *s);
 

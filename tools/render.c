@@ -106,17 +106,9 @@ static bool parse_method(request *r, const char *text) {
 }
 
 static bool parse_more(request *r, int option) {
-    static const tool_word cells[] = {{"flat", CELLS_FLAT}, {"normal", CELLS_NORMAL}, {"plane", CELLS_PLANE}, {NULL, 0}};
     settings *s = &r->settings;
-    unsigned word = 0;
     switch (option) {
-    case OPTION_CELLS:
-        if (!tool_parse_word("--cells", optarg, cells, &word)) {
-            return false;
-        }
-        s->cells = (settings_cells)word;
-        r->has_cells = true;
-        return true;
+    case OPTION_CELLS: r->has_cells = true; return settings_parse_cells(s, optarg);
     case OPTION_ROWS: r->has_rows = true; return tool_parse_range("--rows", optarg, 65536, &r->first_row, &r->end_row);
     case OPTION_STATS: r->stats = optarg; return true;
     case OPTION_REPORT: r->report = true; return true;
@@ -398,7 +390,6 @@ static bool write_report(tool_output *output, const aset_report *report, report_
 }
 
 static int render(const request *r) {
-    static const char *const cells[] = {"flat", "normal", "plane"};
     prepared p;
     aset_statistics statistics;
     memset(&statistics, 0, sizeof statistics);
@@ -413,7 +404,7 @@ static int render(const request *r) {
     double start = tool_seconds();
     done = done && draw_picture(r, &p, &statistics);
     aset_arena_release(&p.arena, &p.mark); /* what is used is what is kept; the peak stays */
-    aset_report report = {&p.tracer, &p.arena, &statistics, aset_method_name(r->settings.method), cells[r->settings.cells],
+    aset_report report = {&p.tracer, &p.arena, &statistics, aset_method_name(r->settings.method), settings_cells_names[r->settings.cells],
                           p.load_s,  p.build_s, tool_seconds() - start, &p.counts};
     if (done && r->stats != NULL) {
         done = write_report(&stats, &report, aset_report_json);

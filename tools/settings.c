@@ -54,6 +54,16 @@ void settings_kinds(char text[SETTINGS_KINDS_BYTES], uint32_t kinds) {
     }
 }
 
+const char *const settings_cells_names[SETTINGS_CELLS] = {"flat", "normal", "plane"};
+
+bool settings_parse_cells(settings *s, const char *text) {
+    static const tool_word words[] = {{"flat", CELLS_FLAT}, {"normal", CELLS_NORMAL}, {"plane", CELLS_PLANE}, {NULL, 0}};
+    unsigned word = 0;
+    bool done = tool_parse_word("--cells", text, words, &word);
+    s->cells = (settings_cells)word;
+    return done;
+}
+
 static bool drawing_option(settings *s, int option) {
     static const tool_word sides[] = {{"less", 0}, {"more", 1}, {NULL, 0}}, rules[] = {{"spd", 1}, {"off", 0}, {NULL, 0}};
     unsigned word = 0;

@@ -72,9 +72,9 @@ static bool parse_methods(trade_words *w, const char *text) {
 }
 
 static bool parse_cells(trade_words *w, const char *text) {
-    tool_word words[TRADE_CELLS + 1] = {{NULL, 0}};
-    for (unsigned i = 0; i < TRADE_CELLS; i++) {
-        words[i] = (tool_word){trade_cells[i], 1u << i};
+    tool_word words[SETTINGS_CELLS + 1] = {{NULL, 0}};
+    for (unsigned i = 0; i < SETTINGS_CELLS; i++) {
+        words[i] = (tool_word){settings_cells_names[i], 1u << i};
     }
     return tool_parse_words("--cells", text, words, &w->cells);
 }

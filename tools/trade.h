@@ -21,9 +21,6 @@ typedef struct trade_approx {
 
 /* Exact, the four that are tried of themselves, and what --approx and --approx-depth say if it is none of them. */
 enum { TRADE_EXACT = 0, TRADE_GIVEN = 5, TRADE_APPROXES = 6 };
-/* What a cell may remember: settings_cells, and the words for them. */
-enum { TRADE_CELLS = 3 };
-extern const char *const trade_cells[TRADE_CELLS];
 /* The words of the command line; a list of length 0, methods 0: not given. */
 #define TRADE_LIST_MAX 16u
 typedef struct trade_words {

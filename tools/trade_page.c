@@ -109,7 +109,7 @@ static bool print_picture(const trade *t, FILE *f, const trade_setting *s, unsig
     char *path =
         trade_path(t, "%td-%s-%" PRIu32 "x%" PRIu32 "-%u-%s%s%s.png", group - t->groups + 1, group->scene->label,
                    group->width, group->height, number, s->approx == TRADE_EXACT ? "exact" : s->rays->kinds,
-                   is_drafted ? "-" : "", is_drafted ? trade_cells[s->cells] : "");
+                   is_drafted ? "-" : "", is_drafted ? settings_cells_names[s->cells] : "");
     bool done = pixels != NULL && path != NULL && trade_draw(t, s, pixels, &figures, &build_us, &render_us) &&
                 write_picture(path, group, pixels);
     if (pixels == NULL) {
@@ -123,7 +123,7 @@ static bool print_picture(const trade *t, FILE *f, const trade_setting *s, unsig
                       s->rays->text, aset_method_name(s->method));
         print_grid(f, s);
         (void)fprintf(f, "%s%s%s, time %.2f, %" PRIu64 " bytes, ", is_drafted ? ", cells " : "",
-                      is_drafted ? trade_cells[s->cells] : "",
+                      is_drafted ? settings_cells_names[s->cells] : "",
                       s->curtail > 0 || s->approx == TRADE_EXACT || is_drafted ? "" : ", no curtailment", s->time,
                       s->figures.peak);
         (void)fprintf(f, s->figures.rmse > 0 ? "%.1f dB" : "equal", s->figures.psnr);
@@ -173,7 +173,7 @@ static void print_row(FILE *f, const trade_setting *s) {
                   aset_method_name(s->method));
     print_grid(f, s);
     (void)fprintf(f, "</td><td>%s</td><td>%s</td><td>", s->rays->text,
-                  s->approx != TRADE_EXACT ? trade_cells[s->cells] : "");
+                  s->approx != TRADE_EXACT ? settings_cells_names[s->cells] : "");
     if (s->approx != TRADE_EXACT && s->cells == CELLS_FLAT) {
         (void)fprintf(f, s->curtail > 0 ? "%g" : "off", s->curtail);
     }
@@ -238,7 +238,7 @@ static bool print_group(const trade *t, FILE *f, const trade_group *group, char 
                   group->width, group->height, counts->objects, group->scene->loaded.scene_bytes, n, n_best, t->rounds,
                   t->rounds > 1 ? "s" : "", 1e-6 * (double)group->base);
     bool done = true;
-    for (int cells = 0; cells < TRADE_CELLS; cells++) {
+    for (int cells = 0; cells < SETTINGS_CELLS; cells++) {
         for (unsigned approx = 0; done && approx < TRADE_APPROXES; approx++) {
             const trade_setting *s = choose_picture(t, group, approx, cells);
             done = s == NULL || print_picture(t, f, s, approx);

@@ -19,12 +19,11 @@ static const trade_approx approxes[TRADE_GIVEN] = {
     {"shadow", "shadow rays", ASET_SHADOW, 0},
     {"primary", "eye rays", ASET_PRIMARY, 0},
 };
-const char *const trade_cells[TRADE_CELLS] = {"flat", "normal", "plane"};
 /* Of these, those that a draft is tried with: everything, and shadows beside exact eye rays. */
 #define DRAFT_APPROXES (1u << 2 | 1u << 3)
 
 /* Of one space: the exact setting, flat ones with and without curtailment, drafts. */
-#define SETTINGS_OF_SPACE (2u * TRADE_APPROXES + (TRADE_CELLS - 1u) * 2u)
+#define SETTINGS_OF_SPACE (2u * TRADE_APPROXES + (SETTINGS_CELLS - 1u) * 2u)
 
 /* --- scenes --- */
 
@@ -260,7 +259,7 @@ static bool plan_drafts(trade *t, const trade_words *w, trade_group *group, cons
                         const aset_space_options *options, const aset_space_size *size) {
     bool is_second = method == &aset_grid && (w->methods & 1u) != 0; /* tool_methods[0] is mset */
     bool done = true;
-    for (unsigned cells = CELLS_NORMAL; cells < TRADE_CELLS; cells++) {
+    for (unsigned cells = CELLS_NORMAL; cells < SETTINGS_CELLS; cells++) {
         for (unsigned approx = TRADE_EXACT + 1; done && (w->cells >> cells & 1) != 0 && approx < TRADE_APPROXES; approx++) {
             bool is_tried = w->settings.has_approx || w->settings.has_approx_depth || (DRAFT_APPROXES >> approx & 1) != 0;
             if (!is_tried || (t->wanted >> approx & 1) == 0) {

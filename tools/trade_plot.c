@@ -35,14 +35,14 @@ static const struct {
 /*
  * Blocks of points: two for each approximation (open, filled), one for each kind of drafts and approximation, the rings.
  */
-enum { BLOCK_DRAFTS = 2 * TRADE_APPROXES, BLOCK_RINGS = (1 + TRADE_CELLS) * TRADE_APPROXES };
+enum { BLOCK_DRAFTS = 2 * TRADE_APPROXES, BLOCK_RINGS = (1 + SETTINGS_CELLS) * TRADE_APPROXES };
 
 /* A draft's shape is this much larger, for the mark within it; by settings_cells: gnuplot's number of the mark, its size. */
 #define DRAFT_SIZE 1.4
 static const struct {
     int shape;
     double size;
-} marks[TRADE_CELLS] = {{0, 0}, {1, 0.45}, {7, 0.3}};
+} marks[SETTINGS_CELLS] = {{0, 0}, {1, 0.45}, {7, 0.3}};
 
 /* What the axes of all panels of a plot show. */
 typedef struct scale {
@@ -232,11 +232,11 @@ static void print_legend(FILE *f, const scale *a, int height) {
                           i > TRADE_EXACT ? "approximate: " : "", a->t->approxes[i].text);
         }
     }
-    for (int cells = CELLS_NORMAL; cells < TRADE_CELLS; cells++) {
+    for (int cells = CELLS_NORMAL; cells < SETTINGS_CELLS; cells++) {
         if (has_cells(a, (settings_cells)cells)) {
             (void)fprintf(f, "NaN with points pt %d ps %g lc '#000000' title '%s within: draft, cells %s', ",
                           marks[cells].shape, marks[cells].size, cells == CELLS_NORMAL ? "cross" : "dot",
-                          trade_cells[cells]);
+                          settings_cells_names[cells]);
         }
     }
     (void)fputs("NaN with points pt 6 ps 0.95 lc '#000000' title 'open: no curtailment', "

@@ -83,7 +83,7 @@ static char *make_key(const trade_setting *s) {
     } else {
         (void)fputc(',', stream);
         print_field(stream, s->rays->kinds);
-        (void)fprintf(stream, ",%" PRIu32 ",%s,", s->rays->level, trade_cells[s->cells]);
+        (void)fprintf(stream, ",%" PRIu32 ",%s,", s->rays->level, settings_cells_names[s->cells]);
         if (s->cells == CELLS_FLAT) {
             (void)fprintf(stream, "%g", s->curtail);
         }
