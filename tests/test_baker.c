@@ -869,6 +869,132 @@ static void test_baker__bent_polygons_in_any_number_of_passes(void **state) {
 }
 
 /* The quick way in and the sink give the same words, kept triangles included. */
+/* The plane of a long thin triangle, as rounding has it, may lie far beside it, and no pass may find what another does not. */
+static void test_baker__slivers_in_any_number_of_passes(void **state) {
+    (void)state;
+    enum { N = 40000, DIVISIONS = 256 };
+    random_state r = random_start(1);
+    aset_real *coordinates = malloc((size_t)N * 9 * sizeof *coordinates);
+    assert_non_null(coordinates);
+    for (int i = 0; i < N; i++) { /* from corner to corner, up to just below a layer of blocks; at first two as large as the box */
+        double top = (16 * (1 + random_below(&r, DIVISIONS / 4 - 1)) - 0.6) / (4.0 * DIVISIONS), long_[3], from[3], share = random_between(&r, 0.3, 1);
+        from[2] = top * random_between(&r, 0, 1);
+        long_[2] = top - from[2];
+        for (int a = 0; a < 2; a++) {
+            from[a] = random_between(&r, 0, 0.02);
+            long_[a] = random_between(&r, 0.98, 1) - from[a];
+        }
+        for (int a = 0; a < 3 && i < 2; a++) {
+            from[a] = 0;
+            long_[a] = a == 1 ? i : 1;
+        }
+        for (int a = 0; a < 3; a++) {
+            coordinates[9 * i + a] = (aset_real)from[a];
+            coordinates[9 * i + 3 + a] = (aset_real)(from[a] + long_[a]);
+            coordinates[9 * i + 6 + a] = (aset_real)(from[a] + share * long_[a] + random_between(&r, -5e-7, 5e-7));
+        }
+    }
+    soup s = {coordinates, N, 1, {plain_material(), plain_material()}, true};
+    aset_bake_options options = options_of(DIVISIONS, DIVISIONS, DIVISIONS);
+    baked whole, parts;
+    options.keep_none = true;
+    bake_source(&whole, soup_emit, &s, &options, (size_t)64 << 20);
+    options.bytes = (size_t)DIVISIONS * DIVISIONS * DIVISIONS / 8 + 16 * (size_t)whole.draft.n_facets + 4 * whole.draft.n_words + 60000;
+    bake_source(&parts, soup_emit, &s, &options, (size_t)64 << 20);
+    check(parts.report.passes > whole.report.passes, "%" PRIu32 " passes", parts.report.passes);
+    check(same_words(&whole.draft, &parts.draft), "%" PRIu32 " facets and %" PRIu32, whole.draft.n_facets, parts.draft.n_facets);
+    bake_close(&whole);
+    bake_close(&parts);
+    free(coordinates);
+}
+
+/* Squares of so many materials, and a polygon of so many points. */
+typedef struct crowd {
+    uint32_t n_materials, n_points;
+} crowd;
+
+static aset_status crowd_emit(const aset_sink *sink, const void *context) {
+    const crowd *c = context;
+    aset_status status = ASET_OK;
+    for (uint32_t i = 0; i < c->n_materials && status == ASET_OK; i++) {
+        double x = i % 20, y = i / 20, z = i % 7 * 0.3; /* NOLINT: whole numbers */
+        const aset_vec3 points[4] = {at(x, y, z), at(x + 0.9, y, z), at(x + 0.9, y + 0.9, z), at(x, y + 0.9, z)};
+        aset_material material = plain_material();
+        material.fill.r = (aset_real)(i % 20) / 20;
+        material.fill.g = (aset_real)(i / 20) / 20;
+        status = sink->material(sink->context, &material);
+        status = status == ASET_OK ? aset_sink_polygon(sink, points, NULL, 4) : status;
+    }
+    if (c->n_points > 0 && status == ASET_OK) {
+        status = sink->polygon_begin(sink->context, c->n_points, false);
+        for (uint32_t i = 0; i < c->n_points && status == ASET_OK; i++) {
+            double t = (double)i / c->n_points;
+            aset_vec3 point = at(t < 0.5 ? t : 1 - t, t < 0.5 ? 0 : 0.1, 1);
+            status = sink->polygon_point(sink->context, &point, NULL);
+        }
+        status = status == ASET_OK ? sink->polygon_end(sink->context) : status;
+    }
+    return status;
+}
+
+/* All textures are told apart in 512 kB, whatever marks and a large polygon take besides. */
+static void test_baker__textures_of_little_memory(void **state) {
+    (void)state;
+    const struct {
+        uint32_t divisions, points;
+        size_t bytes;
+    } cases[] = {{64, 0, 600000}, {64, 9000, 750000}, {128, 0, 1200000}, {256, 0, 5000000}};
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        crowd c = {400, cases[i].points};
+        aset_bake_options options = options_of(cases[i].divisions, cases[i].divisions, cases[i].divisions);
+        baked much, little;
+        options.keep_none = true;
+        bake_source(&much, crowd_emit, &c, &options, (size_t)64 << 20);
+        options.bytes = cases[i].bytes * (sizeof(aset_real) / 4);
+        bake_source(&little, crowd_emit, &c, &options, (size_t)64 << 20);
+        check(little.report.merged == 0 && little.report.textures >= 400, "%zu: %" PRIu32 " textures, %" PRIu32 " facets share", i,
+              little.report.textures, little.report.merged);
+        check(same_words(&much.draft, &little.draft), "%zu", i);
+        bake_close(&much);
+        bake_close(&little);
+    }
+}
+
+/* The region has room for the points of the largest polygon, or the bake says what is missing; automatic divisions fit beside them. */
+static void test_baker__a_polygon_of_many_points(void **state) {
+    (void)state;
+    for (uint32_t points = 10000; points <= 100000; points *= 10) {
+        for (uint32_t divisions = 0; divisions <= 16; divisions += 8) {
+            crowd c = {1, points};
+            aset_bake_options options = options_of(divisions, divisions, divisions);
+            aset_status status = ASET_ERR_NOMEM;
+            size_t bytes = 100000;
+            int tries = 0;
+            for (; status == ASET_ERR_NOMEM && tries < 5; tries++) {
+                aset_arena arena;
+                aset_draft draft;
+                aset_bake_report report;
+                guarded memory = guarded_open(bytes);
+                assert_int_equal(aset_arena_init(&arena, memory.block, bytes), ASET_OK);
+                status = bake_all(&draft, &report, &arena, &options, crowd_emit, &c);
+                bytes += arena.missing;
+                guarded_close(&memory);
+            }
+            check(status == ASET_OK, "%" PRIu32 " points, %" PRIu32 " divisions: %d after %d tries", points, divisions, (int)status, tries);
+            options.bytes = 64 * points / 10; /* the points alone take more */
+            aset_arena arena;
+            aset_draft draft;
+            aset_bake_report report;
+            guarded memory = guarded_open((size_t)16 << 20);
+            assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+            status = bake_all(&draft, &report, &arena, &options, crowd_emit, &c);
+            check(status == ASET_ERR_NOMEM && arena.missing > 0, "%" PRIu32 " points: %d", points, (int)status);
+            check(arena.peak <= options.bytes, "%zu bytes of %zu", arena.peak, options.bytes);
+            guarded_close(&memory);
+        }
+    }
+}
+
 static void test_baker__triangles_are_polygons(void **state) {
     (void)state;
     for (uint64_t i = 0; i < 6; i++) {
@@ -1421,6 +1547,9 @@ int main(void) {
         cmocka_unit_test(test_baker__a_million_triangles_in_one_voxel),
         cmocka_unit_test(test_baker__too_many_layers_are_refused),
         cmocka_unit_test(test_baker__bent_polygons_in_any_number_of_passes),
+        cmocka_unit_test(test_baker__slivers_in_any_number_of_passes),
+        cmocka_unit_test(test_baker__textures_of_little_memory),
+        cmocka_unit_test(test_baker__a_polygon_of_many_points),
         cmocka_unit_test(test_baker__triangles_are_polygons),
         cmocka_unit_test(test_baker__noise),
         cmocka_unit_test(test_baker__a_ground_is_kept),

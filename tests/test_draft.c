@@ -1295,6 +1295,9 @@ static void test_draft__beams_and_reach_refuse(void **state) {
     assert_int_equal(aset_reach_init(&reach, &d.draft, 64, &arena), ASET_ERR_NOMEM);
     assert_int_equal(arena.missing, ASET_BYTES_REACH(64, d.draft.stage.counts.lights) - sizeof block);
     assert_int_equal(arena.used, 0);
+    d.draft.stage.counts.lights = 0; /* and then nothing is needed */
+    assert_int_equal(aset_arena_init(&arena, NULL, 0), ASET_OK);
+    assert_int_equal(aset_reach_init(&reach, &d.draft, 8, &arena), ASET_OK);
     drawn_close(&d);
 }
 

@@ -48,7 +48,8 @@ typedef struct aset_flat {
     uint32_t last_number;
     bool has_last, has_added; /* has_added: it was part of a sum */
     uint32_t passes; /* over the source, without the counter's */
-    size_t least;    /* at the end: the fewest free bytes of the arena that are enough for these divisions */
+    size_t least;    /* at the end: the fewest free bytes of the arena that are enough for these divisions and this order of objects;
+                        another one may take others where there are more than 254 materials */
 } aset_flat;
 
 /*

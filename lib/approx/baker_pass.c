@@ -79,9 +79,16 @@ static bool place_cells(aset_baker *b) {
     return true;
 }
 
+static size_t texture_bytes(const aset_baker *b) {
+    return ASET_ROUND(b->texture_capacity * sizeof *b->textures);
+}
+
+static size_t point_bytes(const aset_baker *b) {
+    return ASET_ROUND((size_t)b->max_points * 3 * sizeof *b->points) + ASET_ROUND((size_t)b->max_points * sizeof *b->crossings);
+}
+
 static size_t fixed_bytes(const aset_baker *b) {
-    return ASET_ROUND((size_t)b->max_points * 3 * sizeof *b->points) + ASET_ROUND((size_t)b->max_points * sizeof *b->crossings) +
-           (size_t)baker_blocks(b) * sizeof *b->marks + ASET_ROUND(b->texture_capacity * sizeof *b->textures);
+    return point_bytes(b) + (size_t)baker_blocks(b) * sizeof *b->marks + texture_bytes(b);
 }
 
 /* Cuts the region up; the bins of a pass take what the raw facets leave. */
@@ -94,7 +101,7 @@ static void cut_region(aset_baker *b) {
     b->marks = (uint64_t *)(void *)at;
     at += (size_t)baker_blocks(b) * sizeof *b->marks;
     b->textures = (aset_material *)(void *)at;
-    at += ASET_ROUND(b->texture_capacity * sizeof *b->textures);
+    at += texture_bytes(b);
     b->after = at;
     b->raw = (uint64_t *)(void *)(b->region + b->region_bytes);
     memset(b->marks, 0, (size_t)baker_blocks(b) * sizeof *b->marks);
@@ -123,9 +130,16 @@ static bool start_pass(aset_baker *b) {
     return true;
 }
 
-/* A region of need bytes would have done; there is none now. */
+/* The most bytes that the region may take. */
+static size_t room_for_region(const aset_baker *b) {
+    size_t left = b->arena->size - b->arena->used, taken = b->arena->used - b->mark.used, most = b->options.bytes;
+    most = most > taken ? most - taken : 0;
+    return (b->options.bytes > 0 && most < left ? most : left) / ASET_ALIGN * ASET_ALIGN;
+}
+
+/* So many bytes more would have done; there is no region now. */
 static aset_status give_up(aset_baker *b, size_t need) {
-    size_t left = b->arena->size - b->arena->used;
+    size_t left = room_for_region(b);
     b->arena->missing = need > left ? need - left : 1;
     b->phase = PHASE_FAILED;
     aset_arena_release(b->arena, &b->mark);
@@ -139,11 +153,44 @@ static size_t need_at_most(const aset_baker *b) {
                        (uint64_t)b->n_counted * sizeof *b->raw);
 }
 
-/* The most bytes that the region may take. */
-static size_t room_for_region(const aset_baker *b) {
-    size_t left = b->arena->size - b->arena->used, taken = b->arena->used - b->mark.used, most = b->options.bytes;
-    most = most > taken ? most - taken : 0;
-    return (b->options.bytes > 0 && most < left ? most : left) / ASET_ALIGN * ASET_ALIGN;
+static uint32_t longest_divisions(const aset_baker *b) {
+    uint32_t longest = b->n[0] > b->n[1] ? b->n[0] : b->n[1];
+    return longest > b->n[2] ? longest : b->n[2];
+}
+
+/* Are the divisions ours to choose, and not the coarsest? */
+static bool can_coarsen(const aset_baker *b) {
+    return b->options.divisions[0] == 0 && longest_divisions(b) > AUTO_LONGEST_MIN;
+}
+
+/* Divisions to try after these. */
+static uint32_t coarser(const aset_baker *b) {
+    uint32_t longest = longest_divisions(b) * 3 / 4;
+    return longest > AUTO_LONGEST_MIN ? longest : AUTO_LONGEST_MIN;
+}
+
+/* A region with room for the fewest bins. */
+static size_t need_at_least(const aset_baker *b) {
+    return fixed_bytes(b) + 2 * BINS_MIN * BYTES_PER_BIN(b);
+}
+
+/* ASET_BYTES_BAKE has room for polygons of so few points. */
+#define POINT_BYTES_FEW 8192u
+
+/* The region's bytes for the divisions, of so many; wanted: 0 for as many as usual. Of a list of textures a quarter of the rest may be. */
+static void size_region(aset_baker *b, size_t room, size_t wanted) {
+    if (wanted == 0 && b->options.bytes > 0) {
+        wanted = room;
+    } else if (wanted == 0) {
+        size_t points = point_bytes(b), usual = ASET_BYTES_BAKE(b->n[0], b->n[1], b->n[2]);
+        wanted = points > POINT_BYTES_FEW ? whole_bytes_sum(usual, points) : usual;
+    }
+    b->region_bytes = wanted < room ? wanted / ASET_ALIGN * ASET_ALIGN : room;
+    b->texture_capacity = b->single ? 1 : TEXTURES_MAX;
+    while (b->texture_capacity > 64 &&
+           (fixed_bytes(b) > b->region_bytes || texture_bytes(b) > (b->region_bytes + texture_bytes(b) - fixed_bytes(b)) / 4)) {
+        b->texture_capacity /= 2;
+    }
 }
 
 /* The region, and in it everything for the divisions; wanted: its bytes, 0 for as many as usual. */
@@ -151,17 +198,14 @@ static aset_status start_baking(aset_baker *b, size_t wanted, uint32_t longest_m
     size_t room = room_for_region(b);
     b->single = b->n_materials <= 1;
     b->bin_bytes = ASET_ROUND(b->single ? BIN_BYTES_SINGLE : sizeof(bin));
-    b->texture_capacity = b->single ? 1 : TEXTURES_MAX;
     choose_divisions(b, room, longest_max);
+    size_region(b, room, wanted);
+    while (b->region_bytes < need_at_least(b) && can_coarsen(b)) {
+        choose_divisions(b, room, coarser(b));
+        size_region(b, room, 0);
+    }
     if (!place_cells(b)) {
         return ASET_ERR_PRECISION;
-    }
-    if (wanted == 0) {
-        wanted = b->options.bytes > 0 ? room : ASET_BYTES_BAKE(b->n[0], b->n[1], b->n[2]);
-    }
-    b->region_bytes = wanted < room ? wanted / ASET_ALIGN * ASET_ALIGN : room;
-    while (!b->single && b->texture_capacity > 64 && fixed_bytes(b) > b->region_bytes / 4) {
-        b->texture_capacity /= 2;
     }
     b->n_raw = 0;
     b->n_counted = 0;
@@ -171,7 +215,7 @@ static aset_status start_baking(aset_baker *b, size_t wanted, uint32_t longest_m
     b->counting = false;
     b->failure = ASET_OK;
     b->report.voxels = b->report.merged = 0;
-    if (b->region_bytes < fixed_bytes(b) + 2 * BINS_MIN * BYTES_PER_BIN(b)) {
+    if (b->region_bytes < need_at_least(b)) {
         b->region_bytes = 0;
         return give_up(b, need_at_most(b));
     }
@@ -187,16 +231,6 @@ static void free_region(aset_baker *b) {
     b->arena->used_by[ASET_CATEGORY_SCRATCH] -= b->region_bytes;
 }
 
-static uint32_t longest_divisions(const aset_baker *b) {
-    uint32_t longest = b->n[0] > b->n[1] ? b->n[0] : b->n[1];
-    return longest > b->n[2] ? longest : b->n[2];
-}
-
-/* Are the divisions ours to choose, and not the coarsest? */
-static bool can_coarsen(const aset_baker *b) {
-    return b->options.divisions[0] == 0 && longest_divisions(b) > AUTO_LONGEST_MIN;
-}
-
 /* The region was too small: once more with a larger one, or coarser if the divisions are ours to choose. */
 static aset_status bake_again(aset_baker *b, size_t need) {
     uint32_t longest = longest_divisions(b);
@@ -208,7 +242,7 @@ static aset_status bake_again(aset_baker *b, size_t need) {
         return start_baking(b, had / 4 * 5 < room ? had / 4 * 5 : room, longest);
     }
     if (can_coarsen(b)) {
-        return start_baking(b, 0, longest * 3 / 4 > AUTO_LONGEST_MIN ? longest * 3 / 4 : AUTO_LONGEST_MIN);
+        return start_baking(b, 0, coarser(b));
     }
     return give_up(b, need);
 }
@@ -223,7 +257,12 @@ static aset_status start_stage(aset_baker *b) {
     /* A hostile build: in the words' order materials may repeat that were remembered in the source's. */
     b->counter.counts.materials = b->counter.counts.objects;
 #endif
-    aset_status status = aset_scene_init(&b->stage, b->arena, &b->counter.counts);
+    const aset_counts *counts = &b->counter.counts;
+    uint64_t bytes = ASET_BYTES_SCENE(counts->objects, counts->coordinates, counts->materials, counts->lights);
+    if (b->options.bytes > 0 && bytes > room_for_region(b)) {
+        return give_up(b, whole_bytes(bytes));
+    }
+    aset_status status = aset_scene_init(&b->stage, b->arena, counts);
     if (status == ASET_OK) {
         b->stage_sink = aset_scene_sink(&b->stage);
         status = start_baking(b, 0, AUTO_LONGEST_MAX);
@@ -248,6 +287,9 @@ static aset_status end_measuring(aset_baker *b) {
     }
     size_t bytes = ASET_KEPT_POINTS_MAX * 3 * sizeof *b->points; /* while fitting, kept polygons are counted only */
     bytes = bytes > (size_t)b->max_points * 3 * sizeof *b->points ? bytes : (size_t)b->max_points * 3 * sizeof *b->points;
+    if (b->options.bytes > 0 && bytes > room_for_region(b)) {
+        return give_up(b, bytes);
+    }
     b->points = aset_arena_alloc(b->arena, bytes, ASET_CATEGORY_SCRATCH);
     if (b->points == NULL) {
         b->phase = PHASE_FAILED;

@@ -208,7 +208,7 @@ static bool take_sums(aset_flat *f, size_t *need) {
     size_t list = ASET_ROUND((most < capacity ? most : capacity) * sizeof *f->summary.textures);
     size_t before = n > 0 ? ASET_ROUND((f->space.cells.n_cells + FLAT_GROUP - 1) / FLAT_GROUP * sizeof *f->before) : 0;
     size_t per_cell = f->sum_words * sizeof *f->sums;
-    *need = list + before + least * per_cell;
+    *need = whole_bytes((uint64_t)list + before + (uint64_t)least * per_cell);
     if (!fits(f, *need)) {
         return false;
     }

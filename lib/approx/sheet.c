@@ -16,6 +16,7 @@
 typedef struct sheet {
     int a, u, v;
     const aset_real *normal, *corner; /* its normal, a point of it */
+    aset_real low, high;                          /* between which it lies, of the axis that it faces: as far as the cells do */
     aset_real at_u, at_v, at_a, slope_u, slope_v; /* the same point, its slopes */
     int64_t unit_u, unit_v;                       /* the slopes in units */
     uint32_t side;
@@ -38,8 +39,8 @@ static bin *find_bin(aset_baker *b, const sheet *s, uint32_t key, uint32_t u, ui
 /* One column's middle. */
 static void add_sample(aset_baker *b, const sheet *s, int32_t i, int32_t j) {
     aset_real du = (aset_real)i + R(0.5) - s->at_u, dv = (aset_real)j + R(0.5) - s->at_v;
-    aset_real height = s->at_a + s->slope_u * du + s->slope_v * dv, top = (aset_real)b->n[s->a] * 4;
-    height = height > 0 ? (height < top ? height : top) : 0;
+    aset_real height = s->at_a + s->slope_u * du + s->slope_v * dv;
+    height = height > s->low ? (height < s->high ? height : s->high) : s->low; /* the plane of a sliver may be far beside it */
     uint32_t k = (uint32_t)(int32_t)height / 4;
     k -= k == b->n[s->a];
     const uint32_t strides[3] = {6, 6 * b->n[0], 6 * b->n[0] * b->n[1]};
@@ -152,6 +153,13 @@ static void fill_row(aset_baker *b, sheet *s, const aset_real *points, uint32_t 
     }
 }
 
+/* Its extent on the axis that it faces. */
+static inline void sheet_bound(sheet *s, const aset_baker *b, aset_real low, aset_real high) {
+    aset_real top = columns_on(b, s->a);
+    s->low = real_min(real_max(low, 0), top);
+    s->high = real_min(real_max(high, 0), top);
+}
+
 /* The side that a surface faces. False: none. */
 static inline bool sheet_begin(sheet *s, const aset_real normal[3], const aset_real *corner) {
     aset_real x = real_abs(normal[0]), y = real_abs(normal[1]), z = real_abs(normal[2]);
@@ -213,11 +221,12 @@ static aset_vec3 normal_of(const aset_real *points, uint32_t n) {
 
 /* A polygon in columns, which reach from..to on each axis. */
 static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings, int32_t from[3],
-                           int32_t to[3]) {
+                           int32_t to[3], const aset_real low[3], const aset_real high[3]) {
     aset_vec3 facing = normal_of(points, n);
     const aset_real normal[3] = {facing.x, facing.y, facing.z};
     sheet s;
     if (sheet_begin(&s, normal, points) && enters_pass(b, &s, from, to)) {
+        sheet_bound(&s, b, low[s.a], high[s.a]);
         for (int32_t row = from[s.v]; row < to[s.v] && b->failure == ASET_OK; row++) {
             fill_row(b, &s, points, n, row, from[s.u], to[s.u], crossings);
         }
@@ -228,6 +237,7 @@ static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, a
 /* Not for triangles: these take aset_sheet_triangles. */
 static void look_at_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
     int32_t from[3], to[3];
+    aset_real lows[3], highs[3];
     for (int a = 0; a < 3; a++) {
         aset_real low = REAL_INFINITY, high = -REAL_INFINITY;
         for (uint32_t i = 0; i < n; i++) {
@@ -238,10 +248,12 @@ static void look_at_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_r
         }
         from[a] = first_column(low, columns_on(b, a));
         to[a] = first_column(high, columns_on(b, a));
+        lows[a] = low;
+        highs[a] = high;
     }
     b->report.unseen += b->floor_block == 0; /* until it is seen */
     if ((from[0] == to[0]) + (from[1] == to[1]) + (from[2] == to[2]) < 2) {
-        sample_polygon(b, points, n, crossings, from, to);
+        sample_polygon(b, points, n, crossings, from, to, lows, highs);
     }
 }
 
@@ -316,6 +328,7 @@ static void sample_triangle(aset_baker *b, triangle *t) {
     const aset_real normal[3] = {facing.x, facing.y, facing.z};
     sheet s;
     if (sheet_begin(&s, normal, p) && enters_pass(b, &s, t->from, t->to)) {
+        sheet_bound(&s, b, real_min(p[s.a], real_min(q[s.a], r[s.a])), real_max(p[s.a], real_max(q[s.a], r[s.a])));
         for (int32_t row = t->from[s.v]; row < t->to[s.v] && b->failure == ASET_OK; row++) {
             fill_triangle_row(b, &s, t, row);
         }
@@ -323,7 +336,7 @@ static void sample_triangle(aset_baker *b, triangle *t) {
     }
 }
 
-/* Is nothing of a triangle in a further pass's layers? Its plane does not leave its box: so that is seen before anything is computed. */
+/* Is nothing of a triangle in a further pass's layers? Its samples do not leave its box: so that is seen before anything is computed. */
 static inline bool is_elsewhere(const aset_baker *b, const triangle *t) {
     if (b->floor_block == 0) {
         return false;

@@ -108,7 +108,7 @@ static aset_status list_textures(aset_summary *summary, const aset_space *space,
     summary->space = space;
     summary->answers = &aset_summary_answers;
     summary->capacity = capacity > 0 ? capacity : aset_summary_capacity(space->scene);
-    summary->textures = (aset_material *)(void *)(arena->block + arena->used);
+    summary->textures = arena->block != NULL ? (aset_material *)(void *)(arena->block + arena->used) : NULL;
     *bytes = ASET_BYTES_SUMMARY(space->cells.n_cells, summary->capacity);
     aset_status status = pass(summary, false, room < UINT32_MAX ? (uint32_t)room : UINT32_MAX);
     if (status == ASET_ERR_NOMEM) {
@@ -142,7 +142,9 @@ aset_status aset_summary_build(aset_summary *summary, const aset_space *space, u
     /* the arena gives the first free bytes, where the list stands already, and does not clear them */
     made.textures = aset_arena_alloc(arena, made.n_textures * sizeof *made.textures, ASET_CATEGORY_TEXTURES);
     made.of_cell = aset_arena_alloc(arena, numbers, ASET_CATEGORY_TEXTURES);
-    memset(made.of_cell, 0, numbers);
+    if (numbers > 0) { /* of an arena without a block there is no address */
+        memset(made.of_cell, 0, numbers);
+    }
     *summary = made;
     (void)pass(summary, true, 0);
     return ASET_OK;

@@ -147,7 +147,7 @@ aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t
     uint64_t bytes = ASET_ROUND_64((uint64_t)n_lights * sizeof(aset_reach_map)) +
                      n_lights * ASET_ROUND_64((uint64_t)tiles * tiles * sizeof(aset_real)); /* ASET_BYTES_REACH, whatever a size_t holds */
     unsigned char *at = aset_arena_alloc(arena, whole_bytes(bytes), ASET_CATEGORY_SCRATCH);
-    if (at == NULL) {
+    if (at == NULL && bytes > 0) {
         return ASET_ERR_NOMEM;
     }
     const outlook_cells cells = aset_outlook_cells_of(draft);
