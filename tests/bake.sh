@@ -139,7 +139,7 @@ headers_hold_the_words() {
 
 headers_compile() {
     local name file
-    for name in bunny 2nd-try int a.b draft_; do
+    for name in bunny 2nd-try int a.b draft_ main uint32_t aset_vec3; do
         file=$name.h
         works bake "$scenes/block.obj" --grid 8 -o "$file"
         printf '#include "%s"\n#include "%s"\n#include <aset/aset.h>\n' "$file" "$file" >use.c
@@ -191,6 +191,7 @@ bake_refuses() {
     refuses 2 "aset: --memory: " bake "$model" --memory 1.5M -o a.h
     refuses 2 "aset: --name: " bake "$model" --name 2x -o a.h
     refuses 2 "aset: --name: " bake "$model" --name int -o a.h
+    refuses 2 "aset: --name: " bake "$model" --name aset_draft -o a.h
     refuses 2 "aset: --name: " bake "$model" --name x -o a.draft
     refuses 1 "aset: nothing.obj: " bake nothing.obj -o a.h
     refuses 1 "aset: a.draft: " bake a.draft -o b.draft

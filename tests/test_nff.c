@@ -708,10 +708,10 @@ static void test_nff__refusals_of_the_sink(void **state) {
         const char *token, *degenerate;
     } calls[] = {
         {1, "b", "background"},          {2, "v", "degenerate view"},     {9, "l", "light"},
-        {10, "f", "material"},           {11, "p", "degenerate polygon"}, {11, "p", "degenerate polygon"},
-        {11, "p", "degenerate polygon"}, {11, "p", "degenerate polygon"}, {11, "p", "degenerate polygon"},
-        {12, "pp", "degenerate patch"},  {12, "pp", "degenerate patch"},  {12, "pp", "degenerate patch"},
-        {12, "pp", "degenerate patch"},  {12, "pp", "degenerate patch"},  {13, "s", "degenerate sphere"},
+        {10, "f", "material"},           {11, "p", "a polygon with a number"}, {11, "p", "a polygon with a number"},
+        {11, "p", "a polygon with a number"}, {11, "p", "a polygon with a number"}, {11, "p", "a polygon with a number"},
+        {12, "pp", "a patch with a number"},  {12, "pp", "a patch with a number"},  {12, "pp", "a patch with a number"},
+        {12, "pp", "a patch with a number"},  {12, "pp", "a patch with a number"},  {13, "s", "degenerate sphere"},
         {14, "c", "degenerate cone"},
     };
     static const struct {

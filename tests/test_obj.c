@@ -39,6 +39,10 @@ static void test_obj__forms_of_corners(void **state) {
         "f 1 2 3#",
         "\tf\t1\t2\t3  ",
         "f 1\\\n2\\\n\\\n3",
+        "f 1 2 3 # C:\\",
+        "# C:\\\nf 1 2 3",
+        "o x # C:\\\nf 1 2 3",
+        "v 1 2 3 # C:\\\nf -4 -3 -2",
     };
     for (size_t i = 0; i < COUNT_OF(faces); i++) {
         char text[200];
@@ -281,6 +285,10 @@ static void test_obj__errors_of_libraries(void **state) {
     memset(padded + strlen(padded), ' ', 400);
     memcpy(padded + strlen(padded), "\n" F, sizeof "\n" F);
     expect_log(aset_load_obj, padded, strlen(padded), true, &options, RED ONE_LOG, 0);
+    char longest[600] = "mtllib a.mtl\n" THREE "usemtl red\nusemtl "; /* 255 bytes, and a comment: of no library, so grey */
+    memset(longest + strlen(longest), 'x', 255);
+    memcpy(longest + strlen(longest), " # y\n" F, sizeof " # y\n" F);
+    expect_log(aset_load_obj, longest, strlen(longest), true, &options, GREY ONE_LOG, 0);
     char names[400] = "d 0.5\nKd 1 0 0\nnewmtl "; /* what belongs to no material; a name that is too long */
     const char *const own[] = {"broken.mtl", names, NULL};
     memset(names + strlen(names), 'x', 300);

@@ -110,7 +110,7 @@ static void test_ply__every_type_anywhere(void **state) {
 
 static void test_ply__line_ends_before_binary_data(void **state) {
     (void)state;
-    static const char *const ends[] = {"\n", "\r\n", "\r"};
+    static const char *const ends[] = {"\n", "\r\n", "\r", " \n", "\t \r\n", " \t\r"};
     for (size_t e = 0; e < COUNT_OF(ends); e++) {
         bytes_buffer to;
         char header[400];

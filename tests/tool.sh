@@ -924,6 +924,20 @@ outputs_that_cannot_be() {
     tool scene tetra -o nowhere/s.nff
     refused 1 "aset: nowhere/s.nff: "
     [ "$(ls -A)" = folder.png ] || fail "left $(ls -A)"
+    # the longest path that there may be, which ends with a slash
+    local path=nowhere/
+    while [ ${#path} -lt 4095 ]; do path=$path/; done
+    tool scene tetra -o "$path"
+    refused 1 "aset: $path: "
+    tool render "$scenes/balls.nff" -s 8x8 -o a.png -qo b.png
+    refused 2 "aset: --output: the picture goes to a.png already"
+    tool "$scenes/balls.nff" a.png -s 8x8 -qo b.png
+    refused 2 "aset: --output: the picture goes to a.png already"
+    if [ -w /dev/full ]; then
+        "$aset" trade "$scenes/tetra.nff" -o t --quick -s 8 --grids 4 -m mset >/dev/full 2>"$err"
+        status=$?
+        refused 1 "aset: standard output: "
+    fi
 }
 
 # What is read, or already an output, is not written over, whatever name it goes by.
@@ -1109,7 +1123,8 @@ interrupted() {
     local signal pid tries threads=1
     set -m # or else the job would ignore SIGINT, as jobs in the background do
     echo old >a.png
-    for signal in INT:130 TERM:143 HUP:129; do
+    for signal in INT:130 TERM:143 HUP:129 QUIT:131 XCPU:152 USR1:138; do
+        ulimit -c 0
         # what this shell was started to ignore, no job of it can be made to hear
         case $(trap -p "${signal%:*}") in *"''"*) continue ;; esac
         "$aset" render "$scenes/balls.nff" -m brute -s 400x30000 --samples 64 -j $threads -o a.png >/dev/null 2>"$err" &

@@ -76,15 +76,6 @@ static int run_short(int argc, char **argv) {
         tool_error(NULL, 0, "no memory for the command's words");
         return TOOL_FAILED;
     }
-    for (int i = 2; i < argc; i++) {
-        size_t length = strcspn(argv[i], "=");
-        bool is_long = length > 2 && length <= strlen("--output") && strncmp(argv[i], "--output", length) == 0;
-        if (strncmp(argv[i], "-o", 2) == 0 || is_long) {
-            tool_error(NULL, 0, "%s: the picture goes to %s already, expected no %s", argv[0], argv[1], argv[i]);
-            free(words);
-            return TOOL_USAGE;
-        }
-    }
     int n = 0;
     size_t n_draft = is_model(argv[0]) ? N_DRAFT_WORDS : 0;
     words[n++] = (char *)"render";

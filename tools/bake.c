@@ -61,14 +61,17 @@ static bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-static bool is_keyword(const char *name) {
+/* Words of C, and names that a program with aset/aset.h has already. */
+static bool is_taken(const char *name) {
     static const char words[] =
         " auto break case char const continue default do double else enum extern float for goto if inline "
         "int long register restrict return short signed sizeof static struct switch typedef union "
-        "unsigned void volatile while ";
+        "unsigned void volatile while "
+        "main bool true false NULL size_t ptrdiff_t offsetof int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t "
+        "intptr_t uintptr_t intmax_t uintmax_t ";
     char word[NAME_BYTES + 2];
     int length = snprintf(word, sizeof word, " %s ", name);
-    return length < (int)sizeof word && strstr(words, word) != NULL;
+    return length < (int)sizeof word && (strstr(words, word) != NULL || strncmp(name, "aset_", 5) == 0 || strncmp(name, "ASET_", 5) == 0);
 }
 
 /* What may stand as a name with file scope: C reserves the names that begin with an underscore. */
@@ -78,7 +81,7 @@ static bool is_identifier(const char *name) {
         length++;
     }
     return length > 0 && name[length] == '\0' && length < NAME_BYTES && is_letter(name[0]) && name[0] != '_' &&
-           !is_keyword(name);
+           !is_taken(name);
 }
 
 /* The file's own name without folder and .h, with _ for what no identifier has, and with a prefix where it is none yet. */
@@ -99,7 +102,8 @@ static void name_of_file(char name[NAME_BYTES], const char *path) {
 static bool parse_name(request *r) {
     if (!is_identifier(optarg)) {
         tool_error(NULL, 0,
-                   "--name: \"%s\" is no name for a C array, expected letters, digits and _ (%d at most), a letter first",
+                   "--name: \"%s\" is no name for a C array, expected letters, digits and _ (%d at most), a letter first, and no word of C or "
+                   "of the library",
                    optarg, NAME_BYTES - 1);
         return false;
     }

@@ -42,7 +42,7 @@ static struct place {
 static struct stat inputs[INPUTS];
 static unsigned n_inputs; /* ever */
 
-static const int deadly_signals[] = {SIGINT, SIGTERM, SIGHUP};
+static const int deadly_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGALRM, SIGVTALRM, SIGXCPU, SIGUSR1, SIGUSR2};
 #define N_DEADLY (sizeof deadly_signals / sizeof deadly_signals[0])
 
 /*
@@ -206,10 +206,10 @@ static const char *last_part(const char *path) {
 
 /* What the target's folder is. False with errno. */
 static bool stat_folder(const char *target, struct stat *folder) {
-    char path[PATH_BYTES];
+    char path[PATH_BYTES + 1];
     size_t length = (size_t)(last_part(target) - target);
     memcpy(path, target, length);
-    memcpy(path + length, ".", 2); /* there is room: a name of one byte at least stood there */
+    memcpy(path + length, ".", 2); /* the longest may end with its slash */
     return stat(path, folder) == 0;
 }
 

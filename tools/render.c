@@ -37,7 +37,8 @@ static const char help[] =
     "  -s, --size WxH          picture; N is NxN; default the scene's, else 512x512\n"
     "      --samples N         rays a pixel: 1, 4, 9, 16 ...; default 1\n"
     "      --depth N           rays in a chain, the eye ray being 1; default 5\n"
-    "      --rules spd         the SPD testing procedure: (W + 1) x (H + 1) rays through pixel corners, opaque one-sided\n"
+    "      --rules spd         the SPD testing procedure: (W + 1) x (H + 1) rays through pixel corners, so that\n"
+    "                          many pixels; opaque surfaces one-sided\n"
     "      --rows A:B          only the rows A to B - 1 of the picture\n"
     "  -j, --threads N         default 1\n"
     "      --from X,Y,Z --at X,Y,Z --up X,Y,Z --angle DEG   the camera, instead of the scene's\n"
@@ -121,7 +122,13 @@ static bool parse_more(request *r, int option) {
 static bool parse_option(request *r, int option) {
     settings *s = &r->settings;
     switch (option) {
-    case 'o': r->output = optarg; return true;
+    case 'o':
+        if (r->output != NULL) {
+            tool_error(NULL, 0, "--output: the picture goes to %s already, expected no %s", r->output, optarg);
+            return false;
+        }
+        r->output = optarg;
+        return true;
     case 'm': return parse_method(r, optarg);
     case OPTION_GRID: return tool_parse_grid("--grid", optarg, ASET_DIVISIONS_MAX, s->grid);
     case OPTION_OCTREE_DEPTH:
@@ -157,7 +164,7 @@ static bool check_request(const request *r) {
         return false;
     }
     if (s->cells != CELLS_FLAT && s->method != &aset_mset && s->method != &aset_grid) {
-        tool_error(NULL, 0, "--cells: drafts of %s are flat, expected --method mset or grid", aset_method_name(s->method));
+        tool_error(NULL, 0, "--method: %s has no drafts, expected mset or grid, or --cells flat", aset_method_name(s->method));
         return false;
     }
     if (s->cells != CELLS_FLAT && s->approx_kinds != 0 && (grid[0] > ASET_BAKE_DIVISIONS_MAX || grid[1] > ASET_BAKE_DIVISIONS_MAX || grid[2] > ASET_BAKE_DIVISIONS_MAX)) {

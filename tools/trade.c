@@ -323,7 +323,7 @@ static bool write_all(trade *t) {
         (void)printf("%s: %" PRIu32 " settings, %" PRIu32 " of them best, in trade.csv and trade.html\n", t->directory,
                      t->n_settings, n_best);
     }
-    return done;
+    return done && (t->quiet || tool_help("") == TOOL_DONE);
 }
 
 static bool make_directory(const char *path) {

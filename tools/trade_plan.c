@@ -151,6 +151,10 @@ static bool open_scene(trade_scene *scene, const char *name, const settings *s) 
     if (!tool_source_read(&scene->source, &sink)) {
         return false;
     }
+    if (counter.counts.objects == 0) {
+        tool_error(name, 0, "there is no object in it, expected one at least");
+        return false;
+    }
     tool_source_rules(&scene->source, s, &counter.counts);
     if (!measured_open(&scene->loaded, &scene->source, &counter.counts)) {
         scene->loaded.block = NULL; /* given back already */

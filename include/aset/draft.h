@@ -49,8 +49,8 @@ typedef struct aset_bake_options {
                               most 128 on the longest axis */
     size_t bytes;          /* the most that the bake may take of the arena; 0: ASET_BYTES_BAKE of the divisions and the stage,
                               or more if the model turns out to need it, or what is free if that is less. Fewer bytes cost
-                              more passes over the source; below 512 kB, and 8 bytes for each 64 voxels and 16 for each point of the
-                              largest polygon besides, also textures of cells with mixed materials */
+                              more passes over the source; below 512 kB (1 MB in double), 8 bytes for each 64 voxels and 16 for each
+                              point of the largest polygon apart, also textures of cells with mixed materials */
     bool keep_none;        /* no object is kept exact */
 } aset_bake_options;
 

@@ -15,8 +15,8 @@ ASET_HEADER_BEGIN
  * Where entities go. A source calls the functions in this order: view, background and lights at any time; a material before
  * the first object, then it holds for every object up to the next material. A polygon is announced with its number of
  * points, then given point by point, then ended, so that no source needs a buffer for the largest one. Every function
- * returns ASET_OK or the error that the source then returns to its caller; after an error the entity in progress is
- * forgotten.
+ * returns ASET_OK or the error that the source then returns to its caller; after an error of one of its
+ * own three functions a polygon in progress is forgotten, as where another object comes before its end.
  */
 typedef struct aset_sink {
     void *context; /* the first argument of every function */

@@ -177,7 +177,10 @@ static size_t need_at_least(const aset_baker *b) {
 /* ASET_BYTES_BAKE has room for polygons of so few points. */
 #define POINT_BYTES_FEW 8192u
 
-/* The region's bytes for the divisions, of so many; wanted: 0 for as many as usual. Of a list of textures a quarter of the rest may be. */
+/* What marks and points leave is shared out: so that the whole list of textures has its part of 512 kB (of 1 MB in double). */
+#define TEXTURE_SHARE 7u
+
+/* The region's bytes for the divisions, of so many; wanted: 0 for as many as usual. */
 static void size_region(aset_baker *b, size_t room, size_t wanted) {
     if (wanted == 0 && b->options.bytes > 0) {
         wanted = room;
@@ -188,7 +191,7 @@ static void size_region(aset_baker *b, size_t room, size_t wanted) {
     b->region_bytes = wanted < room ? wanted / ASET_ALIGN * ASET_ALIGN : room;
     b->texture_capacity = b->single ? 1 : TEXTURES_MAX;
     while (b->texture_capacity > 64 &&
-           (fixed_bytes(b) > b->region_bytes || texture_bytes(b) > (b->region_bytes + texture_bytes(b) - fixed_bytes(b)) / 4)) {
+           (fixed_bytes(b) > b->region_bytes || texture_bytes(b) > (b->region_bytes + texture_bytes(b) - fixed_bytes(b)) / TEXTURE_SHARE)) {
         b->texture_capacity /= 2;
     }
 }

@@ -352,7 +352,7 @@ static aset_status read_cone(nff *file) {
     }
     const aset_vec3 base = {x[0], x[1], x[2]}, apex = {x[4], x[5], x[6]};
     return answer(file, file->sink->cone(file->sink->context, &base, x[3], &apex, x[7]),
-                  "degenerate cone: no length, no radius, or radii of different sign");
+                  "degenerate cone: no length, no radius, radii of different sign, or a number beyond 10^30");
 }
 #else
 static aset_status read_cone(nff *file) {
@@ -371,7 +371,7 @@ static aset_status read_sphere(nff *file) {
         return status;
     }
     const aset_vec3 centre = {x[0], x[1], x[2]};
-    return answer(file, file->sink->sphere(file->sink->context, &centre, x[3]), "degenerate sphere: its radius is 0");
+    return answer(file, file->sink->sphere(file->sink->context, &centre, x[3]), "degenerate sphere: its radius is 0, or a number beyond 10^30");
 }
 #else
 static aset_status read_sphere(nff *file) {
@@ -419,7 +419,7 @@ static aset_status read_any_polygon(nff *file, bool with_normals, const char *cu
 
 static aset_status read_polygon(nff *file) {
     return read_any_polygon(file, false, "the file ends within a polygon",
-                            "degenerate polygon: all its points are on one line");
+                            "a polygon with a number beyond 10^30");
 }
 #else
 static aset_status read_polygon(nff *file) {
@@ -429,7 +429,7 @@ static aset_status read_polygon(nff *file) {
 
 #if ASET_WITH_PATCHES
 static aset_status read_patch(nff *file) {
-    return read_any_polygon(file, true, "the file ends within a patch", "degenerate patch: all its points are on one line");
+    return read_any_polygon(file, true, "the file ends within a patch", "a patch with a number beyond 10^30");
 }
 #else
 static aset_status read_patch(nff *file) {

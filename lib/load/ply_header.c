@@ -278,7 +278,11 @@ static aset_status leave_header(ply *file) {
     } else {
         const unsigned char *bytes;
         size_t n;
-        const aset_status status = aset_reader_window(reader, 1, &bytes, &n);
+        aset_status status = aset_reader_window(reader, 1, &bytes, &n);
+        while (status == ASET_OK && n > 0 && (bytes[0] == ' ' || bytes[0] == '\t')) {
+            aset_reader_advance(reader, 1);
+            status = aset_reader_window(reader, 1, &bytes, &n);
+        }
         if (status != ASET_OK) {
             return status;
         }
@@ -290,18 +294,25 @@ static aset_status leave_header(ply *file) {
     return ASET_OK;
 }
 
+/* How much of it is looked at for the way in which its lines end. */
+#define FIRST_LINE 32u
+
 static aset_status begin(ply *file) {
     aset_reader *reader = &file->model.reader;
     const unsigned char *bytes;
     size_t n;
     aset_status status = aset_reader_skip_mark(reader);
     if (status == ASET_OK) {
-        status = aset_reader_peek(reader, 5, &bytes, &n);
+        status = aset_reader_peek(reader, FIRST_LINE, &bytes, &n);
     }
     if (status != ASET_OK) {
         return status;
     }
-    file->lone_cr = n == 5 && bytes[3] == '\r' && bytes[4] != '\n';
+    size_t end = 3; /* of "ply" and blanks */
+    while (end < n && (bytes[end] == ' ' || bytes[end] == '\t')) {
+        end++;
+    }
+    file->lone_cr = end + 1 < n && bytes[end] == '\r' && bytes[end + 1] != '\n';
     reader->cut = "the file ends within its header";
     status = need(file, "ply");
     return status == ASET_OK && !aset_reader_is(reader, "ply") ? ply_fail(file, "not a PLY file by its first word", "ply")

@@ -129,20 +129,24 @@ static void quick_rest(aset_reader *reader) {
     }
 }
 
-/* Stops before the line's end, or at the input's. *last is the last byte taken, -1 if there is none. */
+/* Stops before the line's end, or at the input's. *last is the last byte taken, -1 if there is none or it is a comment's. */
 static aset_status skip_to_line_end(aset_reader *reader, int *last) {
+    bool commented = false;
     *last = -1;
     for (;;) {
         int byte;
         const size_t before = reader->at;
         quick_rest(reader);
-        *last = reader->at > before ? reader->bytes[reader->at - 1] : *last;
+        const size_t n = reader->at - before;
+        commented = commented || (reader->joiner >= 0 && n > 0 && memchr(reader->bytes + before, reader->comment, n) != NULL);
+        *last = commented ? -1 : n > 0 ? reader->bytes[reader->at - 1] : *last;
         const aset_status status = look_text(reader, &byte);
         if (status != ASET_OK || byte < 0 || is_line_end(byte)) {
             return status;
         }
         take(reader, byte);
-        *last = byte;
+        commented = commented || byte == reader->comment;
+        *last = commented ? -1 : byte;
     }
 }
 
@@ -252,7 +256,7 @@ aset_status aset_reader_rest(aset_reader *reader, char *text, size_t size, size_
         if (status == ASET_OK && byte >= 0 && byte == reader->joiner) {
             status = take_joint(reader, &joint);
         }
-        const bool comment = byte == reader->comment && (n == 0 || n > *length);
+        const bool comment = byte == reader->comment && (n == 0 || full || n > *length);
         if (status == ASET_OK && byte >= 0 && comment) {
             status = skip_to_line_end(reader, &last);
         }

@@ -71,7 +71,7 @@ static uint32_t choose_planes(aset_real *planes, size_t room, aset_real *extents
     uint32_t n_planes = 0;
     for (size_t i = 0; i < kept + 2; i++) {
         bool is_end = i == 0 || i == kept + 1;
-        size_t k = kept == n || kept < 2 ? i - 1 : (i - 1) * (n - 1) / (kept - 1); /* both outermost ones among them */
+        size_t k = kept == n || kept < 2 ? i - 1 : (size_t)whole_quotient((uint64_t)(i - 1) * (n - 1), kept - 1); /* both outermost ones among them */
         aset_real x = i == 0 ? volume->first[a] : is_end ? volume->last[a] : extents[k];
         if (!is_end && (x <= last || x >= volume->last[a])) {
             continue;
