@@ -6,6 +6,9 @@ SOVERSION := $(shell sed -n 's/^\#define ASET_ABI //p' include/aset/config.h)
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
 BUILD ?= build
+# Make parts words at blanks, and so does pkg-config: a folder with one in its name can be DESTDIR alone.
+one_word = $(if $(word 2,$($(1))),$(error $(1)=$($(1)): expected a name without blanks))
+$(call one_word,BUILD)
 
 # make V=1 shows the commands.
 ifeq ($(V),)
@@ -46,14 +49,20 @@ SHARED := $(BUILD)/libaset.so.$(VERSION)
 
 all: $(ARCHIVES) $(SHARED) $(BUILD)/aset examples ## build everything: libraries, tool, examples
 
+# Other switches than the last time: all is compiled anew, or the objects would not fit together.
+SWITCHES := $(filter -DASET_%,$(CPPFLAGS) $(CFLAGS))
+$(BUILD)/switches: FORCE
+	@mkdir -p $(@D)
+	@echo '$(SWITCHES)' | cmp -s - $@ || echo '$(SWITCHES)' > $@
+
 $(BUILD)/obj/tools/%.o: EXTRA = $(POSIX) $(PNG_CFLAGS)
 # GCC 12 fuses a * b + c in what it vectorizes there, whatever -ffp-contract says, where the machine can.
 $(BUILD)/obj/lib/procedural/%.o $(BUILD)/pic/lib/procedural/%.o: EXTRA = -fno-tree-slp-vectorize
-$(BUILD)/obj/%.o: %.c
+$(BUILD)/obj/%.o: %.c $(BUILD)/switches
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) $(EXTRA) -MMD -MP -c $< -o $@
-$(BUILD)/pic/%.o: %.c
+$(BUILD)/pic/%.o: %.c $(BUILD)/switches
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(CFLAGS) $(EXTRA) -fPIC -fvisibility=hidden -MMD -MP -c $< -o $@
@@ -348,22 +357,36 @@ deps-cluster: ## install what examples/cluster needs: GNU parallel, Open MPI
 deps-consumers: ## install what make consumers and check-abi want besides: a C++ compiler, CMake, Meson, MinGW, abigail-tools
 	bash tools/deps.sh consumers
 
-# Written anew each time: it depends on PREFIX and on the switches.
+# Written anew each time: it depends on PREFIX. The shared library has all that the archives have.
 $(BUILD)/libaset.pc: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' 'Name: libaset' \
 	  'Description: approximate ray tracing in a memory budget fixed at compile time' 'Version: $(VERSION)' \
-	  'Libs: -L$${libdir} -laset_procedural -laset_load -laset -lm' 'Cflags: -I$${includedir}$(addprefix $() ,$(filter -DASET_%,$(CPPFLAGS) $(CFLAGS)))' > $@
+	  'Libs: -L$${libdir} -laset' 'Libs.private: -laset_procedural -laset_load -laset -lm' 'Cflags: -I$${includedir}$(addprefix $() ,$(SWITCHES))' > $@
 
-install: $(ARCHIVES) $(SHARED) $(BUILD)/aset $(BUILD)/libaset.pc ## install under DESTDIR/PREFIX
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(PREFIX)/include/aset
-	install -m 755 $(BUILD)/aset $(DESTDIR)$(PREFIX)/bin/aset
-	install -m 644 include/aset/*.h $(DESTDIR)$(PREFIX)/include/aset
-	install -m 644 $(ARCHIVES) $(DESTDIR)$(LIBDIR)
-	install -m 755 $(SHARED) $(DESTDIR)$(LIBDIR)
-	ln -sf libaset.so.$(VERSION) $(DESTDIR)$(LIBDIR)/libaset.so.$(SOVERSION)
-	ln -sf libaset.so.$(SOVERSION) $(DESTDIR)$(LIBDIR)/libaset.so
-	install -m 644 $(BUILD)/libaset.pc $(DESTDIR)$(LIBDIR)/pkgconfig
+install: install-lib install-tool install-share ## install under DESTDIR/PREFIX; install-lib: all but the tool, for other switches (CPPFLAGS)
+install-lib: $(ARCHIVES) $(SHARED) $(BUILD)/libaset.pc
+	$(call one_word,PREFIX)$(call one_word,LIBDIR)
+	install -d "$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(PREFIX)/include/aset"
+	install -m 644 include/aset/*.h "$(DESTDIR)$(PREFIX)/include/aset"
+	install -m 644 $(ARCHIVES) "$(DESTDIR)$(LIBDIR)"
+	install -m 755 $(SHARED) "$(DESTDIR)$(LIBDIR)"
+	ln -sf libaset.so.$(VERSION) "$(DESTDIR)$(LIBDIR)/libaset.so.$(SOVERSION)"
+	ln -sf libaset.so.$(SOVERSION) "$(DESTDIR)$(LIBDIR)/libaset.so"
+	install -m 644 $(BUILD)/libaset.pc "$(DESTDIR)$(LIBDIR)/pkgconfig"
+install-tool: $(BUILD)/aset
+	$(call one_word,PREFIX)
+	install -d "$(DESTDIR)$(PREFIX)/bin"
+	install -m 755 $(BUILD)/aset "$(DESTDIR)$(PREFIX)/bin/aset"
+
+INSTALLED = $(LIBDIR)/pkgconfig/libaset.pc $(addprefix $(LIBDIR)/,libaset.so libaset.so.$(SOVERSION) $(notdir $(SHARED) $(ARCHIVES))) \
+  $(addprefix $(PREFIX)/,bin/aset $(wildcard include/aset/*.h) $(addprefix share/,man/man1/aset.1 man/man3/libaset.3 bash-completion/completions/aset \
+  thumbnailers/aset.thumbnailer mime/packages/libaset.xml))
+uninstall: ## remove what install has put there, with the same PREFIX, LIBDIR and DESTDIR
+	$(call one_word,PREFIX)$(call one_word,LIBDIR)
+	rm -f $(patsubst %,"$(DESTDIR)%",$(INSTALLED))
+	-@rmdir "$(DESTDIR)$(PREFIX)/include/aset" 2> /dev/null
+	@$(call update_mime)
 
 # What a system has of a program beside the program: pages for man, words for the shell.
 man: $(BUILD)/man/libaset.3 ## the man pages aset(1) and libaset(3), from the help texts and the headers
@@ -375,16 +398,17 @@ $(BUILD)/aset.bash: $(BUILD)/aset $(wildcard tools/*.awk) tools/completion.sh
 	$(call say,BASH)
 	$(Q)bash tools/completion.sh $(BUILD)/aset > $@.new && mv $@.new $@
 
-install: install-share
 SHARE = $(DESTDIR)$(PREFIX)/share
+update_mime = [ -n "$(DESTDIR)" ] || ! command -v update-mime-database > /dev/null || ! [ -d "$(SHARE)/mime/packages" ] || update-mime-database "$(SHARE)/mime"
 install-share: man $(BUILD)/aset.bash
-	install -d $(SHARE)/man/man1 $(SHARE)/man/man3 $(SHARE)/bash-completion/completions $(SHARE)/thumbnailers $(SHARE)/mime/packages
-	install -m 644 $(BUILD)/man/aset.1 $(SHARE)/man/man1
-	install -m 644 $(BUILD)/man/libaset.3 $(SHARE)/man/man3
-	install -m 644 $(BUILD)/aset.bash $(SHARE)/bash-completion/completions/aset
-	install -m 644 tools/desktop/aset.thumbnailer $(SHARE)/thumbnailers
-	install -m 644 tools/desktop/libaset.xml $(SHARE)/mime/packages
-	@[ -n "$(DESTDIR)" ] || ! command -v update-mime-database > /dev/null || update-mime-database $(SHARE)/mime
+	$(call one_word,PREFIX)
+	for folder in man/man1 man/man3 bash-completion/completions thumbnailers mime/packages; do install -d "$(SHARE)/$$folder"; done
+	install -m 644 $(BUILD)/man/aset.1 "$(SHARE)/man/man1"
+	install -m 644 $(BUILD)/man/libaset.3 "$(SHARE)/man/man3"
+	install -m 644 $(BUILD)/aset.bash "$(SHARE)/bash-completion/completions/aset"
+	install -m 644 tools/desktop/aset.thumbnailer "$(SHARE)/thumbnailers"
+	install -m 644 tools/desktop/libaset.xml "$(SHARE)/mime/packages"
+	@$(update_mime)
 
 clean: ## remove the build directory
 	rm -rf $(BUILD)
@@ -394,6 +418,6 @@ help: ## show this text
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
-.PHONY: arduino check-manifests check-abi deps-consumers amalgamation FORCE consumers numerics check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
+.PHONY: install-lib install-tool uninstall arduino check-manifests check-abi deps-consumers amalgamation FORCE consumers numerics check-docs check-examples mpi check-cluster deps-cluster check-desktop man check-man check-completion install-share firmware-test deps-firmware bench-robust check-extremes check-long coverage lint stack determinism fuzz all examples test test-long test-sanitize test-double check-layers check-link check-recursion check-readme check-valgrind werror size demo \
   hp9000 methods ladder method-costs bench bench-instructions bench-peers bench-drafts bench-walk plan-check tables prices pictures deps install clean help
 .SECONDARY:

@@ -11,7 +11,7 @@
 # Then: the README's program is examples/smallest.c, to the letter and under 60 lines; docs/README.md names every page; every
 # link to a file is to one that exists.
 set -u
-build=$1
+case "$1" in /*) build=$1 ;; *) build=$PWD/$1 ;; esac
 cc=$2
 mode=${3:-all}
 project=$PWD
@@ -19,7 +19,7 @@ export LC_ALL=C
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 flags="" is_plain=yes
-case "$build" in
+case "$1" in
 *sanitize*) flags="-fsanitize=address,undefined" is_plain=no ;;
 *double*) flags="-DASET_REAL_BITS=64" is_plain=no ;;
 esac
@@ -60,8 +60,8 @@ program() { # PAGE LINE BODY NAME
     cp "$3" "$name"
     n_programs=$((n_programs + 1))
     # shellcheck disable=SC2086
-    if ! $cc -std=c99 -Wall -Wextra -pedantic -Werror $flags -I"$project/include" "$name" "$project/$build/libaset_procedural.a" \
-        "$project/$build/libaset_load.a" "$project/$build/libaset.a" -lm -o "${name%.c}" 2>log; then
+    if ! $cc -std=c99 -Wall -Wextra -pedantic -Werror $flags -I"$project/include" "$name" "$build/libaset_procedural.a" \
+        "$build/libaset_load.a" "$build/libaset.a" -lm -o "${name%.c}" 2>log; then
         fail "$1:$2: the program does not compile: $(head -n 1 log)"
     elif ! "./${name%.c}" >printed 2>said; then
         fail "$1:$2: the program ends with an error: $(tail -n 1 said)"
@@ -84,8 +84,8 @@ models() {
     for name in $(grep -hoE '\b(models/)?[a-z]+\.(stl|obj|ply)\b' "$1" | sort -u) models/a.stl models/b.obj; do
         case $name in
         *.obj) cp "$work/ball.obj" "$name" ;;
-        *.stl) "$project/$build/tests/convert" "$work/ball.obj" "$name" stl ;;
-        *.ply) "$project/$build/tests/convert" "$work/ball.obj" "$name" ply-le ;;
+        *.stl) "$build/tests/convert" "$work/ball.obj" "$name" stl ;;
+        *.ply) "$build/tests/convert" "$work/ball.obj" "$name" ply-le ;;
         esac
     done
 }
@@ -96,7 +96,7 @@ page() {
     mkdir -p "$folder/pieces" "$folder/in"
     split_page "$file" "$folder/pieces"
     cd "$folder/in" || exit 1
-    ln -s "$project/$build" build
+    ln -s "$build" build
     ln -s "$project/examples" "$project/include" "$project/tools" .
     [ "$mode" = quick ] || models "$project/$file"
     for about in "$folder"/pieces/*.about; do

@@ -1010,6 +1010,14 @@ plan_and_info_at_the_edges() {
     works info huge.nff
     grep -q '^draft *none: ' "$out" || fail "info of a huge scene: $(tail -n 1 "$out")"
     works "$scenes/balls.nff" a.png -m octree --octree-depth 4 -s 8
+    # of a model -m aset is what it is elsewhere, and no draft
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >one.obj
+    works one.obj a.png -m aset -s 32
+    works render one.obj -m aset -o b.png -s 32
+    same a.png b.png "-m aset draws another picture of a model in the short form"
+    works one.obj a.png -s 32
+    works render one.obj --approx all --approx-depth 0 --cells plane --memory 1M -o b.png -s 32
+    same a.png b.png "the short form is no draft"
 }
 
 # A plan keeps to what is asked for or says that it cannot; brute force, the last resort, is looked at where it does.

@@ -28,10 +28,6 @@ static const tool_command commands[] = {
 };
 #define N_COMMANDS (sizeof commands / sizeof commands[0])
 
-/* What the short form puts before the user's own options for a model (all kinds but NFF): a draft. */
-static const char *const draft_words[] = {"--approx", "all", "--approx-depth", "0", "--cells", "plane", "--memory", "1M"};
-#define N_DRAFT_WORDS (sizeof draft_words / sizeof draft_words[0])
-
 static int print_help(void) {
     (void)fputs("aset: draws three-dimensional scenes by exact or approximate ray tracing, in a fixed amount of memory.\n"
                 "\n"
@@ -64,31 +60,26 @@ static bool is_model(const char *word) {
     return kind == TOOL_KIND_OBJ || kind == TOOL_KIND_STL || kind == TOOL_KIND_PLY;
 }
 
-/* SCENE OUT [options], in argv[0] and on, as render DRAFT... SCENE -o OUT [options]. */
+/* SCENE OUT [options], in argv[0] and on, as render SCENE -o OUT [options]: of a model a draft. */
 static int run_short(int argc, char **argv) {
     if (argc < 2 || (argv[1][0] == '-' && argv[1][1] != '\0')) {
         tool_error(NULL, 0, "%s: where should the picture go? It comes second: aset SCENE OUT.png [options], or aset render --help", argv[0]);
         return TOOL_USAGE;
     }
-    /* the program's words render, -o and NULL besides the draft's and the user's */
-    char **words = malloc(((size_t)argc + N_DRAFT_WORDS + 3u) * sizeof *words);
+    char **words = malloc(((size_t)argc + 3u) * sizeof *words); /* the user's, and render, -o and NULL */
     if (words == NULL) {
         tool_error(NULL, 0, "no memory for the command's words");
         return TOOL_FAILED;
     }
     int n = 0;
-    size_t n_draft = is_model(argv[0]) ? N_DRAFT_WORDS : 0;
     words[n++] = (char *)"render";
-    for (size_t i = 0; i < n_draft; i++) {
-        words[n++] = (char *)draft_words[i];
-    }
     words[n++] = argv[0];
     words[n++] = (char *)"-o";
     for (int i = 1; i < argc; i++) {
         words[n++] = argv[i];
     }
     words[n] = NULL;
-    int status = command_render(n, words);
+    int status = is_model(argv[0]) ? command_render_draft(n, words) : command_render(n, words);
     free(words);
     return status;
 }

@@ -120,7 +120,7 @@ static aset_status bake_passes(baked *b, const request *r, tool_source *source, 
     memcpy(options.divisions, r->settings.grid, sizeof options.divisions);
     options.bytes = r->has_memory ? b->arena.size : 0; /* what was granted saves readings */
     aset_status status = tool_bake(&baking, source, &options, &b->arena);
-    *told = baking.told;
+    *told = baking.told || tool_bake_tell(source, status);
     b->draft = baking.draft;
     b->report = baking.report;
     return status;

@@ -287,18 +287,26 @@ aset_status tool_bake(tool_baking *baking, tool_source *source, const aset_bake_
         tool_error(source->path, 0, "there is no object in it, expected one at least for a draft");
         baking->told = true;
     }
-    if (status == ASET_ERR_GEOMETRY && !baking->told) { /* which object: what a scene refuses its reader tells */
-        aset_counter counter;
-        aset_sink sink = aset_counter_sink(&counter);
-        baking->told = !tool_source_read(source, &sink);
-        aset_real most = (aset_real)1e15;
-        if (!baking->told && !(-most <= counter.low.x && -most <= counter.low.y && -most <= counter.low.z && counter.high.x <= most &&
-                               counter.high.y <= most && counter.high.z <= most)) {
-            tool_error(source->path, 0, "an object reaches beyond 10^15, expected a draft's to lie within");
-            baking->told = true;
-        }
-    }
     return status;
+}
+
+/* What a scene refuses its reader tells. */
+bool tool_bake_tell(tool_source *source, aset_status status) {
+    const aset_real most = (aset_real)1e15;
+    aset_counter counter;
+    aset_sink sink = aset_counter_sink(&counter);
+    if (status != ASET_ERR_GEOMETRY) {
+        return false;
+    }
+    if (!tool_source_read(source, &sink)) {
+        return true;
+    }
+    if (-most <= counter.low.x && -most <= counter.low.y && -most <= counter.low.z && counter.high.x <= most && counter.high.y <= most &&
+        counter.high.z <= most) {
+        return false;
+    }
+    tool_error(source->path, 0, "an object reaches beyond 10^15, expected a draft's to lie within");
+    return true;
 }
 
 /* One reading into the builder. */

@@ -144,7 +144,7 @@ static aset_status bake(prepared *p, const settings *s, tool_source *source, boo
     memset(&options, 0, sizeof options);
     memcpy(options.divisions, s->grid, sizeof options.divisions);
     aset_status status = tool_bake(&baking, source, &options, &p->arena);
-    *told = baking.told;
+    *told = baking.told || tool_bake_tell(source, status);
     p->draft = baking.draft;
     p->load_s += baking.load_s;
     p->build_s += baking.build_s;

@@ -162,6 +162,9 @@ aset_sink tool_batch_sink(tool_batch *batch, const aset_sink *target, aset_baker
 /* Hands over the rest. The target's first error, or ASET_OK. */
 aset_status tool_batch_end(tool_batch *batch);
 
+/* Why a bake was refused with this status, if a reading more tells which object it was: true after an error line. */
+bool tool_bake_tell(tool_source *source, aset_status status);
+
 /* What a bake made and took. */
 typedef struct tool_baking {
     aset_draft draft;

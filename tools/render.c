@@ -204,10 +204,18 @@ static bool set_baked(request *r) {
     return true;
 }
 
-static bool parse_request(request *r, int argc, char **argv) {
+/* as_draft: where the words say nothing else it is one. */
+static bool parse_request(request *r, int argc, char **argv, bool as_draft) {
     int option;
+    settings *s = &r->settings;
     memset(r, 0, sizeof *r);
-    r->settings = settings_default();
+    *s = settings_default();
+    if (as_draft) {
+        s->approx_kinds = ASET_ALL_KINDS;
+        s->approx_depth = 0;
+        s->cells = CELLS_PLANE;
+        s->memory = 1u << 20;
+    }
     while ((option = tool_option_next(argc, argv, "o:m:s:j:qh", longs)) != -1) {
         if (option == '?' || !parse_option(r, option)) {
             return false;
@@ -221,8 +229,10 @@ static bool parse_request(request *r, int argc, char **argv) {
         return false;
     }
     r->scene = argv[optind];
-    if (r->is_aset && !r->settings.has_approx) {
-        r->settings.approx_kinds = ASET_ALL_KINDS;
+    if (r->is_aset) {
+        s->approx_kinds = s->has_approx ? s->approx_kinds : ASET_ALL_KINDS;
+        s->approx_depth = s->has_approx_depth ? s->approx_depth : 1;
+        s->cells = r->has_cells ? s->cells : CELLS_FLAT;
     }
     return (!tool_is_draft(r->scene) || set_baked(r)) && check_request(r);
 }
@@ -427,10 +437,18 @@ static int render(const request *r) {
     return done ? TOOL_DONE : TOOL_FAILED;
 }
 
-int command_render(int argc, char **argv) {
+static int command(int argc, char **argv, bool as_draft) {
     request r;
-    if (!parse_request(&r, argc, argv)) {
+    if (!parse_request(&r, argc, argv, as_draft)) {
         return TOOL_USAGE;
     }
     return r.wants_help ? tool_help(help) : render(&r);
+}
+
+int command_render(int argc, char **argv) {
+    return command(argc, argv, false);
+}
+
+int command_render_draft(int argc, char **argv) {
+    return command(argc, argv, true);
 }

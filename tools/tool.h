@@ -10,6 +10,10 @@
 
 #include "aset/scene.h"
 
+#if !ASET_WITH_REFRACTION || !ASET_WITH_APPROXIMATION || !ASET_WITH_DRAFTS
+#error "the tool aset needs refraction, the approximation and drafts: with other switches make the library alone (make install-lib)"
+#endif
+
 #include <getopt.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -29,6 +33,8 @@ enum { TOOL_DONE = 0, TOOL_FAILED = 1, TOOL_USAGE = 2 };
 
 /* argv[0] is the command's own name ("render"), argv[argc] is NULL; getopt's optind is 1 on entry. */
 int command_render(int argc, char **argv);
+/* The short form's for a model: a draft, with --approx all --approx-depth 0 --cells plane --memory 1M, where the words say nothing else. */
+int command_render_draft(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_scene(int argc, char **argv);
 int command_compare(int argc, char **argv);

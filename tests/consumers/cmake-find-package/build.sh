@@ -24,3 +24,10 @@ cmake --install library-double
 cmake -S . -B build-double -DCMAKE_PREFIX_PATH="$PWD/prefix-double"
 cmake --build build-double
 ./build-double/picture > /dev/null
+# Under another prefix than it was configured for, pkg-config finds it from where its file lies.
+cmake --install library-ON --prefix "$PWD/elsewhere"
+flags=$(PKG_CONFIG_PATH=$PWD/elsewhere/lib/pkgconfig pkg-config --cflags --libs libaset)
+# shellcheck disable=SC2086
+$CC -std=c99 -DWITH_SOURCES picture.c $flags -Wl,-rpath,"$PWD/elsewhere/lib" -o picture-elsewhere
+readelf -d picture-elsewhere | grep -q "$PWD/elsewhere/lib"
+check picture-elsewhere
