@@ -301,8 +301,8 @@ wrong_words() {
         refuses 2 "aset: " render ball.obj "$word"
     done
     for method in set octree arts excell brute; do
-        refuses 2 "aset: --cells: drafts of $method are flat" render ball.obj --approx all --cells plane -m $method
-        refuses 2 "aset: --cells: drafts of $method are flat" render ball.obj --approx all --cells normal -m $method
+        refuses 2 "aset: --method: $method has no drafts" render ball.obj --approx all --cells plane -m $method
+        refuses 2 "aset: --method: $method has no drafts" render ball.obj --approx all --cells normal -m $method
     done
     works render ball.obj --approx all --cells normal -m grid -s 16
 }

@@ -147,7 +147,7 @@ aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t
     uint64_t bytes = ASET_ROUND_64((uint64_t)n_lights * sizeof(aset_reach_map)) +
                      n_lights * ASET_ROUND_64((uint64_t)tiles * tiles * sizeof(aset_real)); /* ASET_BYTES_REACH, whatever a size_t holds */
     unsigned char *at = aset_arena_alloc(arena, whole_bytes(bytes), ASET_CATEGORY_SCRATCH);
-    if (at == NULL && bytes > 0) {
+    if (at == NULL && n_lights > 0) {
         return ASET_ERR_NOMEM;
     }
     const outlook_cells cells = aset_outlook_cells_of(draft);
@@ -155,7 +155,7 @@ aset_status aset_reach_init(aset_reach *reach, const aset_draft *draft, uint32_t
     reach->draft = draft;
     reach->lights = (aset_reach_map *)(void *)at;
     reach->n_lights = n_lights;
-    at += ASET_ROUND((size_t)n_lights * sizeof(aset_reach_map));
+    at = n_lights > 0 ? at + ASET_ROUND((size_t)n_lights * sizeof(aset_reach_map)) : NULL;
     for (uint32_t i = 0; i < n_lights; i++, at += ASET_ROUND((size_t)tiles * tiles * sizeof(aset_real))) {
         aset_reach_map *map = reach->lights + i;
         look_from(&map->outlook, draft->stage.lights + i, &cells);
