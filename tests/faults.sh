@@ -132,7 +132,7 @@ has_no_room() {
 }
 
 file_size_limit() {
-    ulimit -S -f 1 || fail "no file size limit can be set"
+    limit_files 1 || fail "no file size limit can be set"
     has_no_room a.nff scene balls --size 3 -o a.nff
     has_no_room a.draft bake "$scenes/balls.nff" --grid 50 --quiet -o a.draft
     has_no_room a.h bake "$scenes/balls.nff" --grid 50 --quiet -o a.h
@@ -142,7 +142,7 @@ file_size_limit() {
 }
 
 thumbs_without_room() {
-    ulimit -S -f 1 || fail "no file size limit can be set"
+    limit_files 1 || fail "no file size limit can be set"
     tool thumb "$scenes/models" -o t -s 128 --quiet
     [ $status -eq 1 ] || fail "status $status"
     [ "$(grep -c 'cannot write' "$err")" -eq 3 ] || fail "says $(cat "$err")"
@@ -150,7 +150,7 @@ thumbs_without_room() {
 }
 
 trade_without_room() {
-    ulimit -S -f 1 || fail "no file size limit can be set"
+    limit_files 1 || fail "no file size limit can be set"
     tool trade "$scenes/models/balls.nff" -o t -m mset --grids 8 -s 20x20 --rounds 9 --quiet
     [ $status -eq 1 ] || fail "status $status"
     [ "$(wc -l <"$err")" -eq 1 ] || fail "$(wc -l <"$err") lines on standard error: $(head -n 2 "$err")"

@@ -960,6 +960,27 @@ static void test_baker__textures_of_little_memory(void **state) {
     }
 }
 
+/* Nor is more taken for the stage. */
+static void test_baker__bytes_for_the_stage(void **state) {
+    (void)state;
+    model m;
+    model_start(&m);
+    model_sphere(&m, at(0, 0, 0), 1);
+    model_light(&m, at(3, 4, 5));
+    aset_bake_options options = options_of(4, 4, 4);
+    aset_arena arena;
+    aset_draft draft;
+    aset_bake_report report;
+    guarded memory = guarded_open(ROOM);
+    options.bytes = 16;
+    options.keep_none = true;
+    assert_int_equal(aset_arena_init(&arena, memory.block, memory.size), ASET_OK);
+    assert_int_equal(bake_all(&draft, &report, &arena, &options, model_emit, &m), ASET_ERR_NOMEM);
+    check(arena.peak == 0 && arena.missing == ASET_BYTES_SCENE(0, 0, 0, 1) - options.bytes, "%zu at the peak, %zu missing", arena.peak, arena.missing);
+    guarded_close(&memory);
+    model_free(&m);
+}
+
 /* The region has room for the points of the largest polygon, or the bake says what is missing; automatic divisions fit beside them. */
 static void test_baker__a_polygon_of_many_points(void **state) {
     (void)state;
@@ -1549,6 +1570,7 @@ int main(void) {
         cmocka_unit_test(test_baker__bent_polygons_in_any_number_of_passes),
         cmocka_unit_test(test_baker__slivers_in_any_number_of_passes),
         cmocka_unit_test(test_baker__textures_of_little_memory),
+        cmocka_unit_test(test_baker__bytes_for_the_stage),
         cmocka_unit_test(test_baker__a_polygon_of_many_points),
         cmocka_unit_test(test_baker__triangles_are_polygons),
         cmocka_unit_test(test_baker__noise),

@@ -478,6 +478,9 @@ static void test_summary__refuses_bad_arguments(void **state) {
     assert_int_equal(aset_summary_measure(&bytes, NULL, 1, &s.arena), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_summary_measure(&bytes, &space, 1, NULL), ASET_ERR_ARGUMENT);
     assert_int_equal(aset_summary_measure(&bytes, &space, UINT32_MAX, &s.arena), ASET_ERR_ARGUMENT);
+    aset_arena nothing;
+    assert_int_equal(aset_arena_init(&nothing, NULL, 0), ASET_OK);
+    assert_int_equal(aset_summary_measure(&bytes, &space, 1, &nothing), ASET_ERR_NOMEM);
     assert_int_equal(s.arena.used, used);
     stage_close(&s);
     model_free(&m);

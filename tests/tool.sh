@@ -882,7 +882,7 @@ full_disk() {
 
 file_size_limit() {
     local file
-    ulimit -S -f 8 || fail "no file size limit can be set"
+    limit_files 8 || fail "no file size limit can be set"
     echo old >old.ppm
     for file in new.png new.ppm old.ppm; do
         tool render "$scenes/balls.nff" -s 300x300 -o $file
