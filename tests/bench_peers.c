@@ -397,7 +397,7 @@ static aset_colour peer_local(peer *p, const shading *s) {
             continue;
         }
         p->rays++;
-        if (peer_any(p->top, aset_shade_start(s, towards.direction, 0), towards.direction, towards.distance)) {
+        if (peer_any(p->top, aset_shade_start(s, towards.direction, false, 0), towards.direction, towards.distance)) {
             continue;
         }
         aset_real diffuse = m->diffuse * n_dot_l;
@@ -411,7 +411,7 @@ static aset_colour peer_local(peer *p, const shading *s) {
 
 static void peer_leave(aset_waiting *stack, uint32_t *n, const shading *s, aset_vec3 direction, aset_real weight,
                        uint32_t depth) {
-    aset_waiting w = {aset_shade_start(s, direction, 0), direction, weight, (uint16_t)depth, 0};
+    aset_waiting w = {aset_shade_start(s, direction, false, 0), direction, weight, (uint16_t)depth, 0};
     stack[(*n)++] = w;
 }
 

@@ -249,7 +249,7 @@ static void add_shadow_rays(rays *shadow, const aset_tracer *tracer, const query
         light_ray towards;
         if (aset_light_towards(&towards, tracer->scene, tracer->scene->lights + i, s.hit.point) &&
             vec_dot(s.normal, towards.direction) > 0) {
-            rays_add(shadow, aset_shade_start(&s, towards.direction, 0), towards.direction, towards.distance);
+            rays_add(shadow, aset_shade_start(&s, towards.direction, false, 0), towards.direction, towards.distance);
         }
     }
 }

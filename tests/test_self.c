@@ -56,7 +56,7 @@ static void bounce(tally *sum, const aset_tracer *tracer, random_state *r, dvec 
     }
     sum->left++;
     sum->again +=
-        aset_query_any(tracer, aset_shade_start(&s, leaving, 0), leaving, REAL_INFINITY, false, REAL_INFINITY, &statistics);
+        aset_query_any(tracer, aset_shade_start(&s, leaving, false, 0), leaving, REAL_INFINITY, false, REAL_INFINITY, &statistics);
 }
 
 static void report(const char *what, const tally *sum, uint64_t seed) {
