@@ -1090,8 +1090,8 @@ END
     works scene snow -o snow.nff
     works plan snow.nff -s 64 --memory 1000 --json
     given=$(json "$out" psnr)
-    works plan snow.nff -s 64 --memory 20K --json
-    awk -v more="$(json "$out" psnr)" -v less="$given" 'BEGIN { exit !(more >= less - 0.5) }' || fail "in 1000 bytes $given dB, in 20K $(json "$out" psnr)"
+    works plan snow.nff -s 64 --memory 2000 --json
+    awk -v more="$(json "$out" psnr)" -v less="$given" 'BEGIN { exit !(more >= less - 1) }' || fail "in 1000 bytes $given dB, in 2000 $(json "$out" psnr)"
     # by the SPD's rules what transmits reflects too, so the program needs that code
     printf 'v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nresolution 32 32\nl 0 5 5\nf 1 1 1 0.5 0 1 0.5 1.3\ns 0 0 0 1\n' >glass.nff
     works plan glass.nff --header usual.h
