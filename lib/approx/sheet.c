@@ -16,7 +16,8 @@
 typedef struct sheet {
     int a, u, v;
     const aset_real *normal, *corner; /* its normal, a point of it */
-    aset_real low, high;                          /* between which it lies, of the axis that it faces: as far as the cells do */
+    int32_t from, to;                 /* of its columns on the axis that it faces: it may lie in the one before from, and in to */
+    aset_real low, high;              /* so that its heights are between these */
     aset_real at_u, at_v, at_a, slope_u, slope_v; /* the same point, its slopes */
     int64_t unit_u, unit_v;                       /* the slopes in units */
     uint32_t side;
@@ -40,7 +41,7 @@ static bin *find_bin(aset_baker *b, const sheet *s, uint32_t key, uint32_t u, ui
 static void add_sample(aset_baker *b, const sheet *s, int32_t i, int32_t j) {
     aset_real du = (aset_real)i + R(0.5) - s->at_u, dv = (aset_real)j + R(0.5) - s->at_v;
     aset_real height = s->at_a + s->slope_u * du + s->slope_v * dv;
-    height = height > s->low ? (height < s->high ? height : s->high) : s->low; /* the plane of a sliver may be far beside it */
+    height = height > s->low ? (height < s->high ? height : s->high) : s->low;
     uint32_t k = (uint32_t)(int32_t)height / 4;
     k -= k == b->n[s->a];
     const uint32_t strides[3] = {6, 6 * b->n[0], 6 * b->n[0] * b->n[1]};
@@ -99,8 +100,10 @@ static inline bool crosses(const aset_real *p, const aset_real *q, int u, int v,
     return true;
 }
 
-/* The plane, when the first middle is met: most sheets meet none. */
-static void make_plane(sheet *s) {
+/* The plane and its extent, when the first middle is met: most sheets meet none. */
+static void make_plane(sheet *s, const aset_baker *b) {
+    s->low = s->from > 0 ? (aset_real)(s->from - 1) : 0;
+    s->high = real_min((aset_real)s->to + R(0.99), columns_on(b, s->a));
     s->slope_u = -s->normal[s->u] / s->normal[s->a];
     s->slope_v = -s->normal[s->v] / s->normal[s->a];
     s->unit_u = to_units(s->slope_u);
@@ -127,7 +130,7 @@ static inline void fill_span(aset_baker *b, sheet *s, aset_real from, aset_real 
             continue;
         }
         if (!s->seen) {
-            make_plane(s);
+            make_plane(s, b);
         }
         add_sample(b, s, column, row);
     }
@@ -151,13 +154,6 @@ static void fill_row(aset_baker *b, sheet *s, const aset_real *points, uint32_t 
     for (uint32_t i = 0; i + 1 < count; i += 2) {
         fill_span(b, s, crossings[i], crossings[i + 1], row, first, end);
     }
-}
-
-/* Its extent on the axis that it faces. */
-static inline void sheet_bound(sheet *s, const aset_baker *b, aset_real low, aset_real high) {
-    aset_real top = columns_on(b, s->a);
-    s->low = real_min(real_max(low, 0), top);
-    s->high = real_min(real_max(high, 0), top);
 }
 
 /* The side that a surface faces. False: none. */
@@ -199,7 +195,7 @@ static bool enters_pass(const aset_baker *b, sheet *s, int32_t from[3], int32_t 
         to[2] = to[2] < l.high ? to[2] : l.high;
         return true;
     }
-    make_plane(s);
+    make_plane(s, b);
     aset_real u = real_max(real_abs((aset_real)from[0] - s->at_u), real_abs((aset_real)to[0] - s->at_u));
     aset_real v = real_max(real_abs((aset_real)from[1] - s->at_v), real_abs((aset_real)to[1] - s->at_v));
     aset_real above = s->at_a + real_abs(s->slope_u) * u + real_abs(s->slope_v) * v + 1, below = 2 * s->at_a - above;
@@ -221,12 +217,14 @@ static aset_vec3 normal_of(const aset_real *points, uint32_t n) {
 
 /* A polygon in columns, which reach from..to on each axis. */
 static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, aset_real *crossings, int32_t from[3],
-                           int32_t to[3], const aset_real low[3], const aset_real high[3]) {
+                           int32_t to[3]) {
     aset_vec3 facing = normal_of(points, n);
     const aset_real normal[3] = {facing.x, facing.y, facing.z};
     sheet s;
-    if (sheet_begin(&s, normal, points) && enters_pass(b, &s, from, to)) {
-        sheet_bound(&s, b, low[s.a], high[s.a]);
+    bool faces = sheet_begin(&s, normal, points);
+    s.from = 0;
+    s.to = INT32_MAX / 2; /* the mean plane of a bent one may leave its box */
+    if (faces && enters_pass(b, &s, from, to)) {
         for (int32_t row = from[s.v]; row < to[s.v] && b->failure == ASET_OK; row++) {
             fill_row(b, &s, points, n, row, from[s.u], to[s.u], crossings);
         }
@@ -237,7 +235,6 @@ static void sample_polygon(aset_baker *b, const aset_real *points, uint32_t n, a
 /* Not for triangles: these take aset_sheet_triangles. */
 static void look_at_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_real *crossings) {
     int32_t from[3], to[3];
-    aset_real lows[3], highs[3];
     for (int a = 0; a < 3; a++) {
         aset_real low = REAL_INFINITY, high = -REAL_INFINITY;
         for (uint32_t i = 0; i < n; i++) {
@@ -248,12 +245,10 @@ static void look_at_polygon(aset_baker *b, aset_real *points, uint32_t n, aset_r
         }
         from[a] = first_column(low, columns_on(b, a));
         to[a] = first_column(high, columns_on(b, a));
-        lows[a] = low;
-        highs[a] = high;
     }
     b->report.unseen += b->floor_block == 0; /* until it is seen */
     if ((from[0] == to[0]) + (from[1] == to[1]) + (from[2] == to[2]) < 2) {
-        sample_polygon(b, points, n, crossings, from, to, lows, highs);
+        sample_polygon(b, points, n, crossings, from, to);
     }
 }
 
@@ -327,8 +322,10 @@ static void sample_triangle(aset_baker *b, triangle *t) {
     aset_vec3 facing = vec_cross(vec(q[0] - p[0], q[1] - p[1], q[2] - p[2]), vec(r[0] - p[0], r[1] - p[1], r[2] - p[2]));
     const aset_real normal[3] = {facing.x, facing.y, facing.z};
     sheet s;
-    if (sheet_begin(&s, normal, p) && enters_pass(b, &s, t->from, t->to)) {
-        sheet_bound(&s, b, real_min(p[s.a], real_min(q[s.a], r[s.a])), real_max(p[s.a], real_max(q[s.a], r[s.a])));
+    bool faces = sheet_begin(&s, normal, p);
+    s.from = t->from[s.a]; /* the plane of a sliver, as rounding has it, may lie far beside it */
+    s.to = t->to[s.a];
+    if (faces && enters_pass(b, &s, t->from, t->to)) {
         for (int32_t row = t->from[s.v]; row < t->to[s.v] && b->failure == ASET_OK; row++) {
             fill_triangle_row(b, &s, t, row);
         }
