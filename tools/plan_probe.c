@@ -6,6 +6,8 @@
  * draws the chosen setting and the unit of time, MSET exact at automatic divisions, by turns, round after round on new
  * pixels, until the time is used up. A setting that does not hold there what the coarse look promised gives way to the next.
  *
+ * Drafts, if they are asked for, are made as render makes them (plan_draft.c), from the finest that fits down.
+ *
  * The bytes are no estimate: measured. The error of an approximation is told
  * only where enough runs show one: a mirror that no run has met would pass for exact.
  */
@@ -276,8 +278,8 @@ static bool step_down(const measured *m, int step, const aset_method *method, ui
 
 /* --- drafts --- */
 
-/* All rays, unless it is given which. */
-static const level usual_draft_levels[] = {{ASET_ALL_KINDS, 0}};
+/* Unless it is given which rays are approximate. */
+static const level all_rays = {ASET_ALL_KINDS, 0};
 
 /*
  * A draft at the setting's divisions, or automatic ones, which are put there. False after an error line; if it does not fit, it is not
@@ -308,12 +310,12 @@ static bool probe_draft(plan *p, probing *q, plan_setting *s) {
 /* As fine as fits, and steps down from there. */
 static bool probe_drafts(plan *p, probing *q) {
     const plan_wish *wish = q->wish;
-    const level *levels = q->levels == &q->given ? &q->given : usual_draft_levels;
+    const level *l = q->levels == &q->given ? &q->given : &all_rays;
     plan_setting s;
     memset(&s, 0, sizeof s);
     s.method = wish->method != NULL ? wish->method : &aset_mset;
-    s.approx_kinds = levels->kinds;
-    s.approx_depth = levels->depth;
+    s.approx_kinds = l->kinds;
+    s.approx_depth = l->depth;
     s.cells = wish->cells;
     memcpy(s.grid, wish->grid, sizeof s.grid);
     int first = p->n;

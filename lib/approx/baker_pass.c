@@ -137,7 +137,12 @@ static size_t room_for_region(const aset_baker *b) {
     return (b->options.bytes > 0 && most < left ? most : left) / ASET_ALIGN * ASET_ALIGN;
 }
 
-/* So many bytes more would have done; there is no region now. */
+/* Does what is taken before the region go beyond what the caller has granted? What the arena has is told by its taking. */
+static bool is_beyond_grant(const aset_baker *b, uint64_t bytes) {
+    return b->options.bytes > 0 && bytes > room_for_region(b);
+}
+
+/* A region of need bytes would have done; there is none now. */
 static aset_status give_up(aset_baker *b, size_t need) {
     size_t left = room_for_region(b);
     b->arena->missing = need > left ? need - left : 1;
@@ -262,7 +267,7 @@ static aset_status start_stage(aset_baker *b) {
 #endif
     const aset_counts *counts = &b->counter.counts;
     uint64_t bytes = ASET_BYTES_SCENE(counts->objects, counts->coordinates, counts->materials, counts->lights);
-    if (b->options.bytes > 0 && bytes > room_for_region(b)) {
+    if (is_beyond_grant(b, bytes)) {
         return give_up(b, whole_bytes(bytes));
     }
     aset_status status = aset_scene_init(&b->stage, b->arena, counts);
@@ -290,7 +295,7 @@ static aset_status end_measuring(aset_baker *b) {
     }
     size_t bytes = ASET_KEPT_POINTS_MAX * 3 * sizeof *b->points; /* while fitting, kept polygons are counted only */
     bytes = bytes > (size_t)b->max_points * 3 * sizeof *b->points ? bytes : (size_t)b->max_points * 3 * sizeof *b->points;
-    if (b->options.bytes > 0 && bytes > room_for_region(b)) {
+    if (is_beyond_grant(b, bytes)) {
         return give_up(b, bytes);
     }
     b->points = aset_arena_alloc(b->arena, bytes, ASET_CATEGORY_SCRATCH);
