@@ -137,14 +137,7 @@ aset_colour aset_trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_ve
                                           : aset_query_layers(found, tracer, ray->origin, direction_of,
                                                               aset_policy_approximate(tracer, kind, depth), statistics);
         count_ray(statistics, kind, n_layers > 0);
-        if (n_layers == 1 && layers[0].cover == 1) {
-            shading s;
-            aset_shading_make(&s, tracer, layers, direction_of);
-            aset_colour local = aset_shade_local(tracer, &s, depth, statistics);
-            shade_add(&sum, weight, &local);
-            send_on(scratch, &n, tracer, &s, depth, weight);
-            left = 0;
-        } else if (n_layers > 0) {
+        if (n_layers > 0) {
             left = shade_layers(&sum, tracer, direction_of, depth, weight, layers, n_layers, scratch, &n, statistics);
         }
         if (left > 0) {
