@@ -19,56 +19,54 @@
 #define NOINLINE
 #endif
 
-/* Rarely needed, and long: one for both callers. a times STEP to the power of *steps; a is not 0. From the ends of the range, denormals too, at most 15 steps. */
-static NOINLINE aset_vec3 in_range(aset_vec3 a, int *steps) {
-    aset_real largest = vec_largest(a);
-    for (; largest < LEAST; largest *= STEP, ++*steps) {
+/*
+ * Rarely needed, and long: one for all callers, of vectors whose square is out of range. From the ends of the range, denormals too,
+ * at most 15 steps.
+ */
+static NOINLINE aset_vec3 unusual_unit(aset_vec3 a, aset_real *length) {
+    aset_real largest = vec_largest(a), back = 1; /* what a step has to be undone by */
+    int steps = 0;
+    *length = 0;
+    if (!(largest > 0)) {
+        return vec(0, 0, 0);
+    }
+    for (; largest < LEAST; largest *= STEP, steps++) {
         a = vec_scale(a, STEP);
+        back = 1 / STEP;
     }
-    for (; largest > MOST && largest <= REAL_MAX; largest *= 1 / STEP, --*steps) {
+    for (; largest > MOST && largest <= REAL_MAX; largest *= 1 / STEP, steps++) {
         a = vec_scale(a, 1 / STEP);
+        back = STEP;
     }
-    return a;
+    aset_real root = real_sqrt(vec_dot(a, a));
+    for (*length = root; steps > 0; steps--) {
+        *length *= back;
+    }
+    return vec_scale(a, 1 / root);
+}
+
+static inline bool is_usual(aset_real square) {
+    return square > VEC_SQUARE_MIN && square < VEC_SQUARE_MAX;
 }
 
 aset_real aset_vec_length(aset_vec3 a) {
-    aset_real square = vec_dot(a, a);
-    if (square > VEC_SQUARE_MIN && square < VEC_SQUARE_MAX) {
+    aset_real square = vec_dot(a, a), length;
+    if (is_usual(square)) {
         return real_sqrt(square);
     }
-    if (!(vec_largest(a) > 0)) {
-        return 0;
-    }
-    int steps = 0;
-    a = in_range(a, &steps);
-    aset_real length = real_sqrt(vec_dot(a, a));
-    for (; steps > 0; steps--) {
-        length *= 1 / STEP;
-    }
-    for (; steps < 0; steps++) {
-        length *= STEP;
-    }
+    (void)unusual_unit(a, &length);
     return length;
 }
 
 aset_vec3 aset_vec_unit(aset_vec3 a) {
-    aset_real square = vec_dot(a, a);
-    if (!(square > VEC_SQUARE_MIN && square < VEC_SQUARE_MAX)) {
-        if (!(vec_largest(a) > 0)) {
-            return vec(0, 0, 0);
-        }
-        int steps = 0;
-        a = in_range(a, &steps);
-        square = vec_dot(a, a);
-    }
-    return vec_scale(a, 1 / real_sqrt(square));
+    aset_real square = vec_dot(a, a), length;
+    return is_usual(square) ? vec_scale(a, 1 / real_sqrt(square)) : unusual_unit(a, &length);
 }
 
 aset_vec3 aset_vec_unit_length(aset_vec3 a, aset_real *length) {
     aset_real square = vec_dot(a, a);
-    if (!(square > VEC_SQUARE_MIN && square < VEC_SQUARE_MAX)) {
-        *length = aset_vec_length(a);
-        return aset_vec_unit(a);
+    if (!is_usual(square)) {
+        return unusual_unit(a, length);
     }
     *length = real_sqrt(square);
     return vec_scale(a, 1 / *length);
