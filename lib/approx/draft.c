@@ -6,6 +6,7 @@
 
 #if ASET_WITH_DRAFTS
 
+#include "scene/entity.h"
 #include "scene/shape.h"
 
 static const uint32_t *take(const uint32_t **at, uint64_t n, const uint32_t *end, bool *fits) {
@@ -192,16 +193,11 @@ static aset_vec3 read_vec(const uint32_t *w) {
 
 static aset_material read_material(const uint32_t *w) {
     aset_material m;
-    m.fill.r = float_of_word(w[0]);
-    m.fill.g = float_of_word(w[1]);
-    m.fill.b = float_of_word(w[2]);
-    m.diffuse = float_of_word(w[3]);
-    m.specular = float_of_word(w[4]);
-    m.shine = float_of_word(w[5]);
-#if ASET_WITH_REFRACTION
-    m.transmittance = float_of_word(w[6]);
-    m.refraction_index = float_of_word(w[7]);
-#endif
+    aset_real amounts[MATERIAL_AMOUNTS];
+    for (int i = 0; i < MATERIAL_AMOUNTS; i++) {
+        amounts[i] = float_of_word(w[i]);
+    }
+    memcpy(&m, amounts, sizeof amounts);
     m.one_sided = false;
     return m;
 }

@@ -10,6 +10,7 @@
 
 #if ASET_WITH_DRAFTS
 
+#include "scene/entity.h"
 #include "scene/shape.h"
 
 static uint32_t clamp_code(aset_real x, uint32_t most) {
@@ -228,14 +229,11 @@ static void write_vec(uint32_t *w, aset_vec3 x) {
 }
 
 static void write_material(uint32_t *w, const aset_material *m) {
-    write_vec(w, vec(m->fill.r, m->fill.g, m->fill.b));
-    write_vec(w + 3, vec(m->diffuse, m->specular, m->shine));
-#if ASET_WITH_REFRACTION
-    w[6] = word_of_float(m->transmittance);
-    w[7] = word_of_float(m->refraction_index);
-#else
-    w[6] = w[7] = word_of_float(0);
-#endif
+    aset_real amounts[TEXTURE_WORDS] = {0};
+    memcpy(amounts, m, MATERIAL_AMOUNTS * sizeof *amounts);
+    for (int i = 0; i < TEXTURE_WORDS; i++) {
+        w[i] = word_of_float(amounts[i]);
+    }
 }
 
 static void write_header(uint32_t *words, const aset_baker *b, uint64_t n_words, uint32_t n_surfaces, uint32_t n_footprints) {

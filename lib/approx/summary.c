@@ -8,6 +8,7 @@
 #include "approx/summary.h"
 
 #include "approx/texture.h"
+#include "scene/entity.h"
 #include "space/walk.h"
 
 #include <string.h>
@@ -47,7 +48,7 @@ static void enter_texture(filling *f) {
     unsigned slot = aset_texture_slot(&f->sum);
     aset_material texture = aset_texture_average(&f->sum);
     uint32_t number;
-    if (f->recent.known[slot] && aset_texture_equal(&texture, &f->recent.textures[slot])) {
+    if (f->recent.known[slot] && aset_entity_same_look(&texture, &f->recent.textures[slot])) {
         return;
     }
     f->recent.textures[slot] = texture;

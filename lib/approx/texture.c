@@ -10,6 +10,9 @@
 
 #include "base/real.h"
 #include "base/whole.h"
+#include "scene/entity.h"
+
+#include <string.h>
 
 #if ASET_WITH_APPROXIMATION
 
@@ -17,17 +20,10 @@
 #define PART_MAX R(16777215)
 
 static void parts_of(const aset_material *m, aset_real parts[TEXTURE_PARTS]) {
-    parts[0] = m->fill.r;
-    parts[1] = m->fill.g;
-    parts[2] = m->fill.b;
-    parts[3] = m->diffuse;
-    parts[4] = m->specular;
-    parts[5] = m->shine;
+    memset(parts, 0, TEXTURE_PARTS * sizeof *parts);
+    memcpy(parts, m, MATERIAL_AMOUNTS * sizeof *parts);
 #if ASET_WITH_REFRACTION
-    parts[6] = m->transmittance;
-    parts[7] = m->refraction_index > 0 ? m->refraction_index : 1; /* 0 means 1, and averages as 1 */
-#else
-    parts[6] = parts[7] = 0;
+    parts[7] = parts[7] > 0 ? parts[7] : 1; /* 0 means 1, and averages as 1 */
 #endif
 }
 
@@ -46,16 +42,7 @@ aset_material aset_texture_average(const texture_sum *sum) {
         parts[i] = real_of_whole((int64_t)whole_quotient(sum->parts[i] + sum->n / 2, sum->n)) / UNIT;
     }
     aset_material m;
-    m.fill.r = parts[0];
-    m.fill.g = parts[1];
-    m.fill.b = parts[2];
-    m.diffuse = parts[3];
-    m.specular = parts[4];
-    m.shine = parts[5];
-#if ASET_WITH_REFRACTION
-    m.transmittance = parts[6];
-    m.refraction_index = parts[7];
-#endif
+    memcpy(&m, parts, MATERIAL_AMOUNTS * sizeof *parts);
     m.one_sided = false;
     return m;
 }
@@ -78,18 +65,9 @@ static aset_real texture_difference(const aset_material *a, const aset_material 
     return sum;
 }
 
-bool aset_texture_equal(const aset_material *a, const aset_material *b) {
-    bool same = a->fill.r == b->fill.r && a->fill.g == b->fill.g && a->fill.b == b->fill.b && a->diffuse == b->diffuse &&
-                a->specular == b->specular && a->shine == b->shine;
-#if ASET_WITH_REFRACTION
-    same = same && a->transmittance == b->transmittance && a->refraction_index == b->refraction_index;
-#endif
-    return same;
-}
-
 bool aset_texture_find(const aset_summary *summary, const aset_material *texture, uint32_t *number) {
     for (uint32_t i = 0; i < summary->n_textures; i++) {
-        if (aset_texture_equal(summary->textures + i, texture)) {
+        if (aset_entity_same_look(summary->textures + i, texture)) {
             *number = i;
             return true;
         }
@@ -121,7 +99,7 @@ unsigned aset_texture_slot(const texture_sum *sum) {
 uint32_t aset_texture_take(aset_summary *summary, texture_recent *recent, const texture_sum *sum) {
     unsigned slot = aset_texture_slot(sum);
     aset_material texture = aset_texture_average(sum);
-    if (recent->known[slot] && aset_texture_equal(&texture, &recent->textures[slot])) {
+    if (recent->known[slot] && aset_entity_same_look(&texture, &recent->textures[slot])) {
         return recent->number[slot];
     }
     uint32_t number = summary->n_textures;

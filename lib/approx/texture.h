@@ -22,8 +22,6 @@ void aset_texture_sum_add(texture_sum *sum, const aset_material *material);
 /* The average, each part rounded to the nearest unit; n > 0. */
 aset_material aset_texture_average(const texture_sum *sum);
 
-bool aset_texture_equal(const aset_material *a, const aset_material *b);
-
 /* The number of an equal texture in the summary's list; false if there is none. */
 bool aset_texture_find(const aset_summary *summary, const aset_material *texture, uint32_t *number);
 

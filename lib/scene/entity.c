@@ -1,6 +1,8 @@
 /* entity.c - the checks of entities, in one place for all sinks. */
 #include "scene/entity.h"
 
+#include <string.h>
+
 /*
  * Where a point may be: so that sums and differences of a few, which are all that is computed before a scene is scaled (scene.c),
  * stay within the range of numbers.
@@ -15,12 +17,19 @@ static bool is_place(aset_vec3 p) {
     return vec_largest(p) <= COORDINATE_MAX && vec_finite(p);
 }
 
-static bool is_amount(aset_real x) {
-    return x >= 0 && real_finite(x);
+/* n numbers, at most MATERIAL_AMOUNTS, of a colour or a material. */
+static aset_status check_amounts(const void *amounts, int n) {
+    aset_real x[MATERIAL_AMOUNTS];
+    bool fine = true;
+    memcpy(x, amounts, (size_t)n * sizeof *x);
+    for (int i = 0; i < n; i++) {
+        fine = fine && x[i] >= 0 && real_finite(x[i]);
+    }
+    return fine ? ASET_OK : ASET_ERR_ARGUMENT;
 }
 
 aset_status aset_entity_check_colour(const aset_colour *colour) {
-    return is_amount(colour->r) && is_amount(colour->g) && is_amount(colour->b) ? ASET_OK : ASET_ERR_ARGUMENT;
+    return check_amounts(colour, 3);
 }
 
 aset_status aset_entity_check_view(const aset_view *view) {
@@ -44,20 +53,18 @@ aset_status aset_entity_check_light(const aset_light *light) {
 }
 
 aset_status aset_entity_check_material(const aset_material *material) {
-    bool fine = is_amount(material->diffuse) && is_amount(material->specular) && is_amount(material->shine);
-#if ASET_WITH_REFRACTION
-    fine = fine && is_amount(material->transmittance) && is_amount(material->refraction_index);
-#endif
-    return fine ? aset_entity_check_colour(&material->fill) : ASET_ERR_ARGUMENT;
+    return check_amounts(material, MATERIAL_AMOUNTS);
 }
 
-static bool same_material(const aset_material *a, const aset_material *b) {
-    bool same = a->fill.r == b->fill.r && a->fill.g == b->fill.g && a->fill.b == b->fill.b && a->diffuse == b->diffuse &&
-                a->specular == b->specular && a->shine == b->shine && a->one_sided == b->one_sided;
-#if ASET_WITH_REFRACTION
-    same = same && a->transmittance == b->transmittance && a->refraction_index == b->refraction_index;
-#endif
-    return same;
+bool aset_entity_same_look(const aset_material *a, const aset_material *b) {
+    aset_real p[MATERIAL_AMOUNTS], q[MATERIAL_AMOUNTS];
+    int i = 0;
+    memcpy(p, a, sizeof p);
+    memcpy(q, b, sizeof q);
+    while (i < MATERIAL_AMOUNTS && p[i] == q[i]) {
+        i++;
+    }
+    return i == MATERIAL_AMOUNTS;
 }
 
 aset_status aset_entity_use_material(aset_recent_materials *recent, bool *is_new) {
@@ -67,7 +74,8 @@ aset_status aset_entity_use_material(aset_recent_materials *recent, bool *is_new
     }
     uint32_t oldest = recent->n > ASET_RECENT ? recent->n - ASET_RECENT : 0;
     for (uint32_t k = recent->n; k > oldest; k--) {
-        if (same_material(&recent->list[(k - 1) % ASET_RECENT], &recent->pending)) {
+        const aset_material *known = &recent->list[(k - 1) % ASET_RECENT];
+        if (known->one_sided == recent->pending.one_sided && aset_entity_same_look(known, &recent->pending)) {
             recent->has_pending = false;
             recent->current = k - 1;
             return ASET_OK;

@@ -8,10 +8,16 @@
 #include "aset/scene.h"
 #include "base/vec.h"
 
+/* The numbers of a material, which stand one beside the other: all of it but the sides from which it is seen. */
+enum { MATERIAL_AMOUNTS = offsetof(aset_material, one_sided) / sizeof(aset_real) };
+
 aset_status aset_entity_check_view(const aset_view *view);
 aset_status aset_entity_check_light(const aset_light *light);
 aset_status aset_entity_check_colour(const aset_colour *colour);
 aset_status aset_entity_check_material(const aset_material *material);
+
+/* Are two materials equal but for the sides from which they are seen? */
+bool aset_entity_same_look(const aset_material *a, const aset_material *b);
 
 /*
  * The current material as a number below recent->n, made current if it is pending. *is_new: it has to be stored, as number
