@@ -78,10 +78,21 @@ void aset_object_bounds(const aset_scene *scene, uint32_t object, aset_vec3 *low
     *high = vec_scale(*high, 1 / scene->scale);
 }
 
+/* How long a box is, and its largest coordinate. */
+static aset_real box_size(aset_vec3 low, aset_vec3 high, aset_real *largest) {
+    *largest = real_max(vec_largest(low), vec_largest(high));
+    return vec_largest(vec_sub(high, low));
+}
+
 aset_real aset_object_margin(aset_vec3 low, aset_vec3 high) {
-    aset_real size = vec_largest(vec_sub(high, low)), largest = real_max(vec_largest(low), vec_largest(high));
+    aset_real largest, size = box_size(low, high, &largest);
     aset_real margin = real_max(size, largest) * (4 * REAL_UNIT);
     return margin > 0 ? margin : R(1e-30); /* every object in the point 0: any width will do, but a width it must be */
+}
+
+bool aset_box_is_precise(aset_vec3 low, aset_vec3 high) {
+    aset_real largest, size = box_size(low, high, &largest);
+    return size == 0 || size >= STEPS_LEAST * 2 * REAL_UNIT * largest;
 }
 
 /* Where there is a hit also the bounds of a cone. */

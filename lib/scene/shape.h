@@ -123,6 +123,9 @@ aset_real aset_object_nearest(const aset_scene *scene, uint32_t object, const pr
  */
 aset_real aset_object_margin(aset_vec3 low, aset_vec3 high);
 
+/* Is a box long enough, in the steps of its coordinates, to be cut? */
+bool aset_box_is_precise(aset_vec3 low, aset_vec3 high);
+
 /* The unit normals at a point on the object. */
 void aset_object_normals(const aset_scene *scene, uint32_t object, aset_vec3 point, aset_vec3 *shading,
                          aset_vec3 *geometric);

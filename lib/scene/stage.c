@@ -6,7 +6,7 @@
  */
 #include "aset/stage.h"
 
-#include "base/vec.h"
+#include "scene/shape.h"
 
 #include <float.h>
 #include <string.h>
@@ -43,12 +43,6 @@ static aset_real radius_of(aset_vec3 low, aset_vec3 high, aset_vec3 centre) {
     aset_real radius = aset_vec_length(vec_sub(high, low)) / 2;
     radius = real_max(radius, vec_largest(centre) * RADIUS_SHARE);
     return radius >= RADIUS_LEAST ? radius : 1;
-}
-
-/* The rule of aset_slices_precise, for the model alone. */
-static bool is_precise(aset_vec3 low, aset_vec3 high) {
-    aset_real size = vec_largest(vec_sub(high, low)), largest = real_max(vec_largest(low), vec_largest(high));
-    return size == 0 || size >= STEPS_LEAST * 2 * REAL_UNIT * largest;
 }
 
 static aset_status emit_background(const stage *s) {
@@ -129,7 +123,7 @@ aset_status aset_stage_emit(const aset_sink *sink, const aset_vec3 *low, const a
     if (!is_box || !(aspect > 0) || !real_finite(aspect) || (o->up != ASET_UP_Y && o->up != ASET_UP_Z)) {
         return ASET_ERR_ARGUMENT;
     }
-    if (!is_precise(*low, *high)) { /* a scene would say so too, but not with the ground */
+    if (!aset_box_is_precise(*low, *high)) { /* a scene would say so too, but not with the ground */
         return ASET_ERR_PRECISION;
     }
     stage s;

@@ -46,9 +46,19 @@ static aset_real cube_root(aset_real x) {
 }
 
 bool aset_slices_precise(const aset_scene *scene) {
-    aset_real size = vec_largest(vec_sub(scene->high, scene->low));
-    aset_real largest = real_max(vec_largest(scene->low), vec_largest(scene->high));
-    return !(scene->margin > 0) || size == 0 || size >= STEPS_LEAST * 2 * REAL_UNIT * largest;
+    return !(scene->margin > 0) || aset_box_is_precise(scene->low, scene->high);
+}
+
+bool aset_slices_coarsen(uint32_t divisions[3], bool far_off) {
+    uint32_t *n = divisions;
+    if (n[0] == 1 && n[1] == 1 && n[2] == 1) {
+        return false;
+    }
+    for (int a = 0; a < 3; a++) {
+        uint32_t less = far_off ? (n[a] + 1) / 2 : (n[a] + 7) / 8;
+        n[a] = n[a] > less ? n[a] - less : 1;
+    }
+    return true;
 }
 
 void aset_slices_auto_divisions(const aset_scene *scene, uint32_t n_objects, size_t budget, uint32_t divisions[3]) {
@@ -66,23 +76,8 @@ void aset_slices_auto_divisions(const aset_scene *scene, uint32_t n_objects, siz
         divisions[a] = n < 1 ? 1 : n > AUTO_DIVISIONS_MAX ? AUTO_DIVISIONS_MAX : (uint32_t)n;
     }
     while (budget > 0 && 12 * ASET_BLOCK_WORDS(divisions[0], divisions[1], divisions[2], 6u) > budget / 2 &&
-           (divisions[0] > 1 || divisions[1] > 1 || divisions[2] > 1)) {
-        for (int a = 0; a < 3; a++) { /* MSET's map of blocks alone would take half of it */
-            divisions[a] -= divisions[a] > 1 ? (divisions[a] + 7) / 8 : 0;
-        }
+           aset_slices_coarsen(divisions, false)) { /* MSET's map of blocks alone would take half of it */
     }
-}
-
-bool aset_slices_coarsen(uint32_t divisions[3], bool far_off) {
-    uint32_t *n = divisions;
-    if (n[0] == 1 && n[1] == 1 && n[2] == 1) {
-        return false;
-    }
-    for (int a = 0; a < 3; a++) {
-        uint32_t less = far_off ? (n[a] + 1) / 2 : (n[a] + 7) / 8;
-        n[a] = n[a] > less ? n[a] - less : 1;
-    }
-    return true;
 }
 
 /* aset_slices_locate in a table of slices, by halving it. */
