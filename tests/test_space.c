@@ -62,7 +62,10 @@ static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *sce
         target.z += span.z * random_between(r, 0, 1);
         aim_at(ray, target);
         if (move_to_hit(ray, scene, object)) {
-            aset_object_normals(scene, object, ray->origin, &shading, &normal);
+            aset_hit surface;
+            surface.point = ray->origin;
+            aset_object_surface(&surface, scene, object);
+            normal = surface.geometric;
             break;
         }
     }

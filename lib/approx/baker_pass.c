@@ -19,6 +19,11 @@
 /* Textures of a draft: what does not fit shares the nearest. */
 #define TEXTURES_MAX 2048u
 
+/* What is for the stage is only counted, from here on. */
+static void count_stage(aset_baker *b) {
+    b->stage_sink = aset_counter_sink(&b->counter);
+}
+
 /*
  * Which objects are kept: the largest, no more than ASET_KEPT_MAX, and of equally large ones all or none, so that their order
  * does not matter.
@@ -245,7 +250,7 @@ static aset_status bake_again(aset_baker *b, size_t need) {
     size_t had = b->region_bytes;
     free_region(b);
     size_t room = room_for_region(b);
-    b->stage_sink = aset_counter_sink(&b->counter);
+    count_stage(b);
     if (had < room) {
         return start_baking(b, had / 4 * 5 < room ? had / 4 * 5 : room, longest);
     }
@@ -306,7 +311,7 @@ static aset_status end_measuring(aset_baker *b) {
     b->phase = PHASE_FIT;
     b->n_materials = 0;
     b->is_other = true;
-    b->stage_sink = aset_counter_sink(&b->counter);
+    count_stage(b);
     return ASET_OK;
 }
 
@@ -324,7 +329,7 @@ static aset_status end_baking(aset_baker *b) {
     }
     aset_baker_harvest(b);
     b->floor_block = b->ceiling_block;
-    b->stage_sink = aset_counter_sink(&b->counter); /* the stage has its entities: further ones go nowhere */
+    count_stage(b); /* the stage has its entities: further ones go nowhere */
     if (b->floor_block == baker_blocks(b)) {
         size_t work = aset_baker_words_bound(b, b->n_counted), bins = need_at_most(b);
         if (b->counting) {
@@ -366,14 +371,14 @@ aset_status aset_baker_init(aset_baker *baker, aset_arena *arena, const aset_bak
     baker->arena = arena;
     baker->mark = aset_arena_mark(arena);
     baker->phase = PHASE_MEASURE;
-    baker->stage_sink = aset_counter_sink(&baker->counter);
+    count_stage(baker);
     return ASET_OK;
 }
 
 /* Objects that still come are refused, and nothing is kept of what else does. */
 static void end_taking(aset_baker *b) {
     b->failure = ASET_ERR_ARGUMENT;
-    b->stage_sink = aset_counter_sink(&b->counter);
+    count_stage(b);
 }
 
 aset_status aset_baker_pass(aset_baker *baker, bool *again) {

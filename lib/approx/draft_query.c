@@ -47,12 +47,6 @@ aset_real aset_draft_query_kept(query_hit *hit, const aset_draft *draft, aset_ve
     return hit->t;
 }
 
-static void kept_surface(aset_hit *surface, const query_hit *hit) {
-    aset_object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal,
-                        &surface->geometric);
-    surface->material = shape_of(hit->scene, hit->object).material;
-}
-
 #else
 
 /* aset_draft_open refuses a draft that keeps objects. */
@@ -60,10 +54,6 @@ aset_real aset_draft_query_kept(query_hit *hit, const aset_draft *draft, aset_ve
                                 aset_real t_max, aset_statistics *statistics) {
     (void)hit, (void)draft, (void)origin, (void)direction, (void)statistics;
     return t_max;
-}
-
-static void kept_surface(aset_hit *surface, const query_hit *hit) {
-    (void)surface, (void)hit;
 }
 
 #endif
@@ -119,10 +109,12 @@ static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 dir
 }
 
 static void draft_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit) {
+#if ASET_WITH_OBJECTS
     if (hit->object != ASET_NO_OBJECT) {
-        kept_surface(surface, hit);
+        aset_object_surface(surface, hit->scene, hit->object);
         return;
     }
+#endif
     facet f = facet_read(tracer->draft, hit->cell);
     surface->cell = hit->cell;
     surface->normal = facet_normal(tracer->draft, &f);

@@ -135,10 +135,11 @@ aset_real aset_object_nearest(const aset_scene *scene, uint32_t object, const pr
     return t > 0 ? t : REAL_INFINITY;
 }
 
-void aset_object_normals(const aset_scene *scene, uint32_t object, aset_vec3 point, aset_vec3 *shading,
-                         aset_vec3 *geometric) {
+void aset_object_surface(aset_hit *surface, const aset_scene *scene, uint32_t object) {
     shape s = shape_of(scene, object);
+    aset_vec3 point = scene_point(scene, surface->point), *geometric = &surface->geometric, *shading = &surface->normal;
     (void)point;
+    surface->material = s.material;
     switch (s.kind) {
 #if ASET_WITH_POLYGONS
     case KIND_POLYGON: *geometric = aset_polygon_normal(s.at, s.n, 3); break;

@@ -126,9 +126,8 @@ aset_real aset_object_margin(aset_vec3 low, aset_vec3 high);
 /* Is a box long enough, in the steps of its coordinates, to be cut? */
 bool aset_box_is_precise(aset_vec3 low, aset_vec3 high);
 
-/* The unit normals at a point on the object. */
-void aset_object_normals(const aset_scene *scene, uint32_t object, aset_vec3 point, aset_vec3 *shading,
-                         aset_vec3 *geometric);
+/* The unit normals at a point on the object, which is in the caller's lengths, and its material. */
+void aset_object_surface(aset_hit *surface, const aset_scene *scene, uint32_t object);
 
 /*
  * The interval of t in which the ray is inside a box; false if it misses. The same formula, (side - origin) * inverse, as

@@ -91,9 +91,7 @@ static bool exact_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 dir
 
 static void exact_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit) {
     (void)own, (void)tracer;
-    aset_object_normals(hit->scene, hit->object, scene_point(hit->scene, surface->point), &surface->normal,
-                        &surface->geometric);
-    surface->material = shape_of(hit->scene, hit->object).material;
+    aset_object_surface(surface, hit->scene, hit->object);
 }
 
 const struct aset_answers aset_exact_answers = {false, exact_meet, exact_any, exact_surface, NULL};
