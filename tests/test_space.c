@@ -50,7 +50,7 @@ static dvec random_on_box(random_state *r, const aset_scene *scene) {
  * the clamp to the object's box holds it.
  */
 static void put_on_surface(aset_ray *ray, random_state *r, const aset_scene *scene, bool in_surface) {
-    aset_vec3 shading = {0, 0, 1}, normal = {0, 0, 1};
+    aset_vec3 normal = {0, 0, 1};
     ray->origin = dvec_real(random_in_scene(r, scene, 1));
     for (int trial = 0; trial < 10; trial++) {
         aset_vec3 low, high;

@@ -88,14 +88,15 @@ bool aset_query_can(const aset_tracer *tracer, bool approximate) {
 #endif
 }
 
-/* A caller's ray, checked; its direction and t_max in unit lengths. length: of the caller's direction. */
+bool aset_query_unit(aset_vec3 *direction, aset_real *length, const aset_ray *ray) {
+    *direction = aset_vec_unit_length(ray->direction, length);
+    return vec_finite(ray->origin) && vec_finite(ray->direction) && real_finite(*length) && *length > 0;
+}
+
+/* A caller's ray, checked; its direction in unit length. length: of the caller's direction. */
 static aset_status accept_ray(const aset_tracer *tracer, const aset_ray *ray, bool approximate, aset_vec3 *direction,
                               aset_real *length) {
-    if (tracer == NULL || ray == NULL || !aset_query_can(tracer, approximate)) {
-        return ASET_ERR_ARGUMENT;
-    }
-    *direction = aset_vec_unit_length(ray->direction, length);
-    bool fine = vec_finite(ray->origin) && vec_finite(ray->direction) && real_finite(*length) && *length > 0 &&
+    bool fine = tracer != NULL && ray != NULL && aset_query_can(tracer, approximate) && aset_query_unit(direction, length, ray) &&
                 ray->t_max == ray->t_max;
     return fine ? ASET_OK : ASET_ERR_ARGUMENT;
 }

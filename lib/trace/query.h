@@ -19,6 +19,9 @@
 /* Whether the tracer has what exact or approximate queries need. */
 bool aset_query_can(const aset_tracer *tracer, bool approximate);
 
+/* The direction of a caller's ray in unit length, and the caller's length of it. False: it is no ray. */
+bool aset_query_unit(aset_vec3 *direction, aset_real *length, const aset_ray *ray);
+
 /* direction: of unit length. False: nothing hit (or curtailed). */
 bool aset_query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                         bool approximate, aset_statistics *statistics);

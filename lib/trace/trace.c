@@ -10,8 +10,6 @@
 
 #include "trace/shade.h"
 
-#include <string.h>
-
 aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena *arena) {
     depth = depth > 0 ? depth : ASET_DEPTH_DEFAULT;
     if (scratch == NULL || arena == NULL || depth > ASET_DEPTH_MAX) {
@@ -166,18 +164,13 @@ aset_status aset_trace_check(const aset_tracer *tracer, const aset_scratch *scra
 
 aset_status aset_ray_colour(aset_colour *colour, const aset_tracer *tracer, const aset_ray *ray, aset_scratch *scratch,
                             aset_statistics *statistics) {
-    aset_statistics ignored;
-    aset_real cover;
+    aset_statistics ignored = {0};
+    aset_real cover, length;
+    aset_vec3 direction;
     aset_status status = aset_trace_check(tracer, scratch);
-    if (status != ASET_OK || colour == NULL || ray == NULL) {
+    if (status != ASET_OK || colour == NULL || ray == NULL || !aset_query_unit(&direction, &length, ray)) {
         return ASET_ERR_ARGUMENT;
     }
-    aset_real length;
-    aset_vec3 direction = aset_vec_unit_length(ray->direction, &length);
-    if (!vec_finite(ray->origin) || !vec_finite(ray->direction) || !real_finite(length) || !(length > 0)) {
-        return ASET_ERR_ARGUMENT;
-    }
-    memset(&ignored, 0, sizeof ignored);
     *colour =
         aset_trace_tree(tracer, ray->origin, direction, NULL, scratch, statistics != NULL ? statistics : &ignored, &cover);
     return ASET_OK;
