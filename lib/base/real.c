@@ -23,25 +23,12 @@ bool aset_real_is_sound(void) {
 static aset_real log2_of(aset_real x) {
     const aset_real least = R(0.70710678);
     int exponent = 0;
-    while (x < least / 32768) {
-        x *= R(65536);
-        exponent -= 16;
-    }
-    if (x < least / 128) {
-        x *= 256;
-        exponent -= 8;
-    }
-    if (x < least / 8) {
-        x *= 16;
-        exponent -= 4;
-    }
-    if (x < least / 2) {
-        x *= 4;
-        exponent -= 2;
-    }
-    if (x < least) {
-        x *= 2;
-        exponent -= 1;
+    for (int bits = 16; bits > 0; bits /= 2) {
+        aset_real factor = (aset_real)(INT32_C(1) << bits);
+        while (x * factor < 2 * least) {
+            x *= factor;
+            exponent -= bits;
+        }
     }
     aset_real s = (x - 1) / (x + 1), s2 = s * s;
     aset_real series =

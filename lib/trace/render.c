@@ -22,7 +22,7 @@ size_t aset_format_bytes(aset_format format) {
     return 0;
 }
 
-static aset_real clamp(aset_real x) {
+INLINE_BUT_FOR_SIZE aset_real clamp(aset_real x) {
     return x > 0 ? (x < 1 ? x : 1) : 0; /* NaN, which cannot come, would be 0 */
 }
 
