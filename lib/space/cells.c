@@ -57,17 +57,21 @@ static void each_block(const uint32_t bricks[3], uint32_t faces, const voxel_box
     }
 }
 
-/* The same for every block of every layer of an object's box. */
-static void each_object_block(const uint32_t bricks[3], uint32_t faces, const voxel_box *box, cells_action act,
-                              void *context) {
+/* The same for every block of every layer of an object's box, of what lies from z_low to z_high. */
+static void each_object_block(const uint32_t bricks[3], uint32_t faces, const voxel_box *box, int32_t z_low, int32_t z_high,
+                              cells_action act, void *context) {
     for (uint32_t face = 0; face < faces; face++) {
-        voxel_box layer = faces == 1 ? *box : cells_face_box(box, face);
-        each_block(bricks, faces, &layer, face, act, context);
+        voxel_box part = faces == 1 ? *box : cells_face_box(box, face);
+        part.low[2] = part.low[2] > z_low ? part.low[2] : z_low;
+        part.high[2] = part.high[2] < z_high ? part.high[2] : z_high;
+        if (part.low[2] <= part.high[2]) {
+            each_block(bricks, faces, &part, face, act, context);
+        }
     }
 }
 
 void aset_cells_each_block(const aset_cells *cells, const voxel_box *box, cells_action act, void *context) {
-    each_object_block(cells->bricks, cells->faces, box, act, context);
+    each_object_block(cells->bricks, cells->faces, box, 0, INT32_MAX, act, context);
 }
 
 uint64_t aset_cells_in_all(const uint32_t n[3], uint32_t faces) {
@@ -104,19 +108,6 @@ static bool chunk_touched(const chunk *c, const uint32_t bricks[3], uint32_t fac
     return from <= c->base + (c->n - 1) && to >= c->base;
 }
 
-/* The part of a box's marks that lies in the bricks of the chunk's layers. */
-static void mark_chunk_part(chunk *c, const uint32_t bricks[3], uint32_t faces, const voxel_box *box, int32_t z_low,
-                            int32_t z_high) {
-    for (uint32_t face = 0; face < faces; face++) {
-        voxel_box part = faces == 1 ? *box : cells_face_box(box, face);
-        part.low[2] = part.low[2] > z_low ? part.low[2] : z_low;
-        part.high[2] = part.high[2] < z_high ? part.high[2] : z_high;
-        if (part.low[2] <= part.high[2]) {
-            each_block(bricks, faces, &part, face, mark_chunk, c);
-        }
-    }
-}
-
 static void count_bricks(const aset_slices *slices, uint32_t bricks[3]) {
     for (int a = 0; a < 3; a++) {
         bricks[a] = (slices->n[a] + 3) / 4;
@@ -147,7 +138,7 @@ aset_status aset_cells_measure(const aset_scene *scene, const aset_slices *slice
         for (uint32_t i = 0; i < scene->counts.objects; i++) {
             voxel_box box = aset_slices_object_box(slices, scene, i);
             if (chunk_touched(&c, bricks, faces, &box)) {
-                mark_chunk_part(&c, bricks, faces, &box, z_low, z_high);
+                each_object_block(bricks, faces, &box, z_low, z_high, mark_chunk, &c);
             }
         }
         for (uint32_t k = 0; k < c.n; k++) {
