@@ -286,18 +286,14 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
 }
 #endif
 
-#if ASET_WITH_SPHERES
-static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real radius) {
-    aset_baker *b = context;
-    aset_status status = aset_entity_check_sphere(centre, radius);
-    status = status == ASET_OK ? check_material(b) : status;
-    if (status != ASET_OK) {
-        return status;
-    }
-    aset_vec3 low, high;
-    aset_real at[ASET_COORDINATES_SPHERE] = {centre->x, centre->y, centre->z, radius};
-    aset_sphere_bounds(at, &low, &high);
-    status = check_box(low, high);
+#if ASET_WITH_SPHERES || ASET_WITH_CONES
+/* What becomes of an object that comes whole, by its box, if that is fine: is it to be kept, or to be sampled? */
+enum { WHOLE_DONE, WHOLE_KEPT, WHOLE_SAMPLED };
+
+static aset_status take_whole(aset_baker *b, aset_vec3 low, aset_vec3 high, int *what) {
+    aset_status status = check_material(b);
+    status = status == ASET_OK ? check_box(low, high) : status;
+    *what = WHOLE_DONE;
     if (status != ASET_OK) {
         return status;
     }
@@ -305,13 +301,31 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
     if (b->phase == PHASE_MEASURE) {
         measure(b, low, high, 1);
     } else if (is_kept(b, low, high, 1)) {
-        return b->stage_sink.sphere(b->stage_sink.context, centre, radius);
+        *what = WHOLE_KEPT;
     } else if (b->phase == PHASE_FIT) {
         fit(b, low, high);
     } else {
-        aset_sheet_sphere(b, *centre, radius);
+        *what = WHOLE_SAMPLED;
     }
     return ASET_OK;
+}
+#endif
+
+#if ASET_WITH_SPHERES
+static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real radius) {
+    aset_baker *b = context;
+    aset_real at[ASET_COORDINATES_SPHERE];
+    aset_vec3 low, high;
+    int what = WHOLE_DONE;
+    aset_status status = aset_entity_sphere(at, &low, &high, centre, radius);
+    status = status == ASET_OK ? take_whole(b, low, high, &what) : status;
+    if (what == WHOLE_KEPT) {
+        return b->stage_sink.sphere(b->stage_sink.context, centre, radius);
+    }
+    if (what == WHOLE_SAMPLED) {
+        aset_sheet_sphere(b, *centre, radius);
+    }
+    return status;
 }
 #endif
 
@@ -319,29 +333,18 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
 static aset_status take_cone(void *context, const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
                              aset_real apex_radius) {
     aset_baker *b = context;
-    aset_status status = aset_entity_check_cone(base, base_radius, apex, apex_radius);
-    status = status == ASET_OK ? check_material(b) : status;
-    if (status != ASET_OK) {
-        return status;
-    }
+    aset_real at[ASET_COORDINATES_CONE];
     aset_vec3 low, high;
-    aset_real at[ASET_COORDINATES_CONE] = {base->x, base->y, base->z, base_radius, apex->x, apex->y, apex->z, apex_radius};
-    aset_cone_bounds(at, &low, &high);
-    status = check_box(low, high);
-    if (status != ASET_OK) {
-        return status;
-    }
-    b->taken++;
-    if (b->phase == PHASE_MEASURE) {
-        measure(b, low, high, 1);
-    } else if (is_kept(b, low, high, 1)) {
+    int what = WHOLE_DONE;
+    aset_status status = aset_entity_cone(at, &low, &high, base, base_radius, apex, apex_radius);
+    status = status == ASET_OK ? take_whole(b, low, high, &what) : status;
+    if (what == WHOLE_KEPT) {
         return b->stage_sink.cone(b->stage_sink.context, base, base_radius, apex, apex_radius);
-    } else if (b->phase == PHASE_FIT) {
-        fit(b, low, high);
-    } else {
+    }
+    if (what == WHOLE_SAMPLED) {
         aset_sheet_cone(b, *base, base_radius, *apex, apex_radius);
     }
-    return ASET_OK;
+    return status;
 }
 #endif
 

@@ -201,15 +201,26 @@ static aset_status take_polygon_end(void *context) {
 }
 #endif
 
+#if ASET_WITH_SPHERES || ASET_WITH_CONES
+/* n coordinates in the scene's own lengths. */
+static void scale_whole(const aset_flat *f, aset_real *at, int n) {
+    for (int i = 0; i < n; i++) {
+        at[i] *= f->stage.scale;
+    }
+}
+#endif
+
 #if ASET_WITH_SPHERES
 static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real radius) {
     aset_flat *f = context;
-    aset_vec3 low, high, c = scene_point(&f->stage, *centre);
-    const aset_real at[ASET_COORDINATES_SPHERE] = {c.x, c.y, c.z, radius * f->stage.scale};
+    aset_real at[ASET_COORDINATES_SPHERE];
+    aset_vec3 low, high;
     aset_status status = f->checks.sphere(&f->counter, centre, radius);
     if (status != ASET_OK) {
         return status;
     }
+    (void)aset_entity_sphere(at, &low, &high, centre, radius);
+    scale_whole(f, at, ASET_COORDINATES_SPHERE);
     aset_sphere_bounds(at, &low, &high);
     return take_object(f, low, high);
 }
@@ -219,13 +230,14 @@ static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real
 static aset_status take_cone(void *context, const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
                              aset_real apex_radius) {
     aset_flat *f = context;
-    aset_vec3 low, high, b = scene_point(&f->stage, *base), a = scene_point(&f->stage, *apex);
-    const aset_real at[ASET_COORDINATES_CONE] = {b.x, b.y, b.z, base_radius * f->stage.scale,
-                                                 a.x, a.y, a.z, apex_radius * f->stage.scale};
+    aset_real at[ASET_COORDINATES_CONE];
+    aset_vec3 low, high;
     aset_status status = f->checks.cone(&f->counter, base, base_radius, apex, apex_radius);
     if (status != ASET_OK) {
         return status;
     }
+    (void)aset_entity_cone(at, &low, &high, base, base_radius, apex, apex_radius);
+    scale_whole(f, at, ASET_COORDINATES_CONE);
     aset_cone_bounds(at, &low, &high);
     return take_object(f, low, high);
 }

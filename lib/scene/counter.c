@@ -92,11 +92,10 @@ static aset_status count_polygon_end(void *context) {
 #if ASET_WITH_SPHERES
 static aset_status count_sphere(void *context, const aset_vec3 *centre, aset_real radius) {
     aset_counter *counter = context;
-    const aset_real at[ASET_COORDINATES_SPHERE] = {centre->x, centre->y, centre->z, radius};
+    aset_real at[ASET_COORDINATES_SPHERE];
     aset_vec3 low, high;
-    aset_status status = aset_entity_check_sphere(centre, radius);
+    aset_status status = aset_entity_sphere(at, &low, &high, centre, radius);
     if (status == ASET_OK) {
-        aset_sphere_bounds(at, &low, &high);
         status = count_object(counter, ASET_COORDINATES_SPHERE, low, high);
     }
     if (status == ASET_OK) {
@@ -110,12 +109,10 @@ static aset_status count_sphere(void *context, const aset_vec3 *centre, aset_rea
 static aset_status count_cone(void *context, const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
                               aset_real apex_radius) {
     aset_counter *counter = context;
-    const aset_real at[ASET_COORDINATES_CONE] = {base->x, base->y, base->z, base_radius,
-                                                 apex->x, apex->y, apex->z, apex_radius};
+    aset_real at[ASET_COORDINATES_CONE];
     aset_vec3 low, high;
-    aset_status status = aset_entity_check_cone(base, base_radius, apex, apex_radius);
+    aset_status status = aset_entity_cone(at, &low, &high, base, base_radius, apex, apex_radius);
     if (status == ASET_OK) {
-        aset_cone_bounds(at, &low, &high);
         status = count_object(counter, ASET_COORDINATES_CONE, low, high);
     }
     if (status == ASET_OK) {

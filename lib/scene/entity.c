@@ -1,6 +1,8 @@
 /* entity.c - the checks of entities, in one place for all sinks. */
 #include "scene/entity.h"
 
+#include "scene/shape.h"
+
 #include <string.h>
 
 /*
@@ -89,18 +91,41 @@ aset_status aset_entity_use_material(aset_recent_materials *recent, bool *is_new
     return ASET_OK;
 }
 
-aset_status aset_entity_check_sphere(const aset_vec3 *centre, aset_real radius) {
-    return is_place(*centre) && real_abs(radius) <= COORDINATE_MAX && radius != 0 ? ASET_OK : ASET_ERR_GEOMETRY;
+#if ASET_WITH_SPHERES || ASET_WITH_CONES
+/* A centre and a radius. */
+static bool put_round(aset_real at[4], const aset_vec3 *centre, aset_real radius) {
+    at[0] = centre->x;
+    at[1] = centre->y;
+    at[2] = centre->z;
+    at[3] = radius;
+    return is_place(*centre) && real_abs(radius) <= COORDINATE_MAX;
 }
+#endif
 
-aset_status aset_entity_check_cone(const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
-                                   aset_real apex_radius) {
-    bool finite = is_place(*base) && is_place(*apex) && real_abs(base_radius) <= COORDINATE_MAX &&
-                  real_abs(apex_radius) <= COORDINATE_MAX;
+#if ASET_WITH_SPHERES
+aset_status aset_entity_sphere(aset_real at[ASET_COORDINATES_SPHERE], aset_vec3 *low, aset_vec3 *high, const aset_vec3 *centre,
+                               aset_real radius) {
+    if (!put_round(at, centre, radius) || radius == 0) {
+        return ASET_ERR_GEOMETRY;
+    }
+    aset_sphere_bounds(at, low, high);
+    return ASET_OK;
+}
+#endif
+
+#if ASET_WITH_CONES
+aset_status aset_entity_cone(aset_real at[ASET_COORDINATES_CONE], aset_vec3 *low, aset_vec3 *high, const aset_vec3 *base,
+                             aset_real base_radius, const aset_vec3 *apex, aset_real apex_radius) {
+    bool finite = put_round(at, base, base_radius) & put_round(at + 4, apex, apex_radius);
     bool one_sign = (base_radius >= 0 && apex_radius >= 0) || (base_radius <= 0 && apex_radius <= 0);
     bool some = base_radius != 0 || apex_radius != 0;
-    return finite && one_sign && some && vec_largest(vec_sub(*apex, *base)) > 0 ? ASET_OK : ASET_ERR_GEOMETRY;
+    if (!finite || !one_sign || !some || !(vec_largest(vec_sub(*apex, *base)) > 0)) {
+        return ASET_ERR_GEOMETRY;
+    }
+    aset_cone_bounds(at, low, high);
+    return ASET_OK;
 }
+#endif
 
 aset_status aset_outline_begin(aset_outline *outline, uint32_t n_points, bool with_normals) {
     outline->open = false;

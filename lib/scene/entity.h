@@ -25,9 +25,15 @@ bool aset_entity_same_look(const aset_material *a, const aset_material *b);
  */
 aset_status aset_entity_use_material(aset_recent_materials *recent, bool *is_new);
 
-aset_status aset_entity_check_sphere(const aset_vec3 *centre, aset_real radius);
-aset_status aset_entity_check_cone(const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
-                                   aset_real apex_radius);
+/* Objects that come whole, checked: their coordinates as a scene keeps them, and their bounds. */
+#if ASET_WITH_SPHERES
+aset_status aset_entity_sphere(aset_real at[ASET_COORDINATES_SPHERE], aset_vec3 *low, aset_vec3 *high, const aset_vec3 *centre,
+                               aset_real radius);
+#endif
+#if ASET_WITH_CONES
+aset_status aset_entity_cone(aset_real at[ASET_COORDINATES_CONE], aset_vec3 *low, aset_vec3 *high, const aset_vec3 *base,
+                             aset_real base_radius, const aset_vec3 *apex, aset_real apex_radius);
+#endif
 
 /* Begin, follow and end a polygon. end: ASET_ERR_GEOMETRY unless all announced points came. */
 aset_status aset_outline_begin(aset_outline *outline, uint32_t n_points, bool with_normals);

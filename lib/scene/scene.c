@@ -238,62 +238,43 @@ static aset_status take_polygon_end(void *context) {
 #endif
 
 #if ASET_WITH_SPHERES || ASET_WITH_CONES
-/* For an object that comes whole; a polygon in progress, whose place it takes, is abandoned. */
-static aset_status prepare_whole(aset_scene *scene, uint64_t coordinates) {
+/* An object that comes whole; a polygon in progress, whose place it takes, is abandoned. */
+static aset_status take_whole(aset_scene *scene, unsigned kind, const aset_real *given, uint32_t n, aset_vec3 low, aset_vec3 high) {
     scene->outline.open = false;
-    aset_status status = check_room(scene, coordinates);
-    return status == ASET_OK ? store_material(scene) : status;
-}
-
-static void store_scaled(const aset_scene *scene, const aset_real *given, uint32_t n) {
+    aset_status status = check_room(scene, n);
+    if (status == ASET_OK) {
+        status = store_material(scene);
+    }
+    if (status != ASET_OK) {
+        return status;
+    }
+    make_room(scene, low, high);
     aset_real *at = scene->coordinates + scene->counts.coordinates;
     for (uint32_t i = 0; i < n; i++) {
         at[i] = given[i] * scene->scale;
     }
+    finish_object(scene, kind, n);
+    *(kind == KIND_SPHERE ? &scene->counts.spheres : &scene->counts.cones) += 1;
+    return ASET_OK;
 }
 #endif
 
 #if ASET_WITH_SPHERES
 static aset_status take_sphere(void *context, const aset_vec3 *centre, aset_real radius) {
-    aset_scene *scene = context;
-    aset_status status = aset_entity_check_sphere(centre, radius);
-    if (status == ASET_OK) {
-        status = prepare_whole(scene, ASET_COORDINATES_SPHERE);
-    }
-    if (status != ASET_OK) {
-        return status;
-    }
-    const aset_real given[ASET_COORDINATES_SPHERE] = {centre->x, centre->y, centre->z, radius};
+    aset_real at[ASET_COORDINATES_SPHERE];
     aset_vec3 low, high;
-    aset_sphere_bounds(given, &low, &high);
-    make_room(scene, low, high);
-    store_scaled(scene, given, ASET_COORDINATES_SPHERE);
-    finish_object(scene, KIND_SPHERE, ASET_COORDINATES_SPHERE);
-    scene->counts.spheres++;
-    return ASET_OK;
+    aset_status status = aset_entity_sphere(at, &low, &high, centre, radius);
+    return status == ASET_OK ? take_whole(context, KIND_SPHERE, at, ASET_COORDINATES_SPHERE, low, high) : status;
 }
 #endif
 
 #if ASET_WITH_CONES
 static aset_status take_cone(void *context, const aset_vec3 *base, aset_real base_radius, const aset_vec3 *apex,
                              aset_real apex_radius) {
-    aset_scene *scene = context;
-    aset_status status = aset_entity_check_cone(base, base_radius, apex, apex_radius);
-    if (status == ASET_OK) {
-        status = prepare_whole(scene, ASET_COORDINATES_CONE);
-    }
-    if (status != ASET_OK) {
-        return status;
-    }
-    const aset_real given[ASET_COORDINATES_CONE] = {base->x, base->y, base->z, base_radius,
-                                                    apex->x, apex->y, apex->z, apex_radius};
+    aset_real at[ASET_COORDINATES_CONE];
     aset_vec3 low, high;
-    aset_cone_bounds(given, &low, &high);
-    make_room(scene, low, high);
-    store_scaled(scene, given, ASET_COORDINATES_CONE);
-    finish_object(scene, KIND_CONE, ASET_COORDINATES_CONE);
-    scene->counts.cones++;
-    return ASET_OK;
+    aset_status status = aset_entity_cone(at, &low, &high, base, base_radius, apex, apex_radius);
+    return status == ASET_OK ? take_whole(context, KIND_CONE, at, ASET_COORDINATES_CONE, low, high) : status;
 }
 #endif
 
