@@ -190,8 +190,8 @@ static uint32_t number_in(uint64_t raw, bool prints) {
 static uint32_t words_of_kept(const aset_scene *stage, uint32_t object) {
     shape s = shape_of(stage, object);
     uint32_t n = s.n;
-    if (s.kind == KIND_POLYGON || s.kind == KIND_PATCH) { /* without what the scene keeps before the points */
-        n -= s.n > (s.kind == KIND_PATCH ? 18u : 9u) ? 3 : 0;
+    if (s.kind == KIND_POLYGON) { /* without what the scene keeps before the points; a patch is kept as a polygon */
+        n -= s.n > 9 ? 3 : 0;
     }
     return KEPT_HEAD_WORDS + n;
 }
@@ -319,8 +319,7 @@ static void write_facets(uint32_t *words, const aset_draft *d, const aset_baker 
 static uint32_t write_object(uint32_t *w, const aset_scene *stage, uint32_t object) {
     shape s = shape_of(stage, object);
     uint32_t n = words_of_kept(stage, object) - KEPT_HEAD_WORDS;
-    bool is_outline = s.kind == KIND_POLYGON || s.kind == KIND_PATCH;
-    w[0] = s.kind | (is_outline ? n / (s.kind == KIND_PATCH ? 6 : 3) : 0) << 8 | (s.material->one_sided ? 1u : 0u) << 31;
+    w[0] = s.kind | (s.kind == KIND_POLYGON ? n / 3 : 0) << 8 | (s.material->one_sided ? 1u : 0u) << 31;
     write_material(w + 1, s.material);
     for (uint32_t k = 0; k < n; k++) {
         w[KEPT_HEAD_WORDS + k] = word_of_float(s.at[s.n - n + k] / stage->scale);
