@@ -149,6 +149,13 @@ static size_t sort_unique(uint32_t *numbers, size_t n) {
     return kept;
 }
 
+/* Programs that are compiled for size only sort: it takes longer, and gives the same lists. */
+#if defined(__OPTIMIZE_SIZE__)
+#define MAPS 0
+#else
+#define MAPS 1
+#endif
+
 /*
  * Numbers listed once each. Where the largest possible number lets a bitmap be afforded there is one, with ranks; else a sorted
  * list is searched.
@@ -159,10 +166,12 @@ typedef struct number_set {
 } number_set;
 
 static uint32_t number_of(const number_set *set, uint32_t wanted) {
+#if MAPS
     if (set->bits != NULL) {
         uint32_t word = set->bits[wanted / 32];
         return set->rank[wanted / 32] + bits_count(word & ((UINT32_C(1) << wanted % 32) - 1));
     }
+#endif
     uint32_t low = 0, high = set->n - 1;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
@@ -369,6 +378,7 @@ static void write_stage(uint32_t *words, const aset_draft *d, const aset_baker *
     write_kept(w, &b->stage);
 }
 
+#if MAPS
 /* All surfaces, or all footprints, below most: in words from *at on. False: no room. */
 static bool collect_by_map(number_set *set, const aset_baker *b, bool prints, uint64_t most, uint32_t **at, const uint32_t *end) {
     uint64_t n_words = (most + 31) / 32;
@@ -398,6 +408,8 @@ static bool collect_by_map(number_set *set, const aset_baker *b, bool prints, ui
     return true;
 }
 
+#endif
+
 static bool collect_by_sorting(number_set *set, const aset_baker *b, bool prints, uint32_t **at, const uint32_t *end) {
     uint32_t *list = *at;
     size_t filled = 0, room = (size_t)(end - list);
@@ -418,8 +430,14 @@ static bool collect_by_sorting(number_set *set, const aset_baker *b, bool prints
 }
 
 static bool collect(number_set *set, const aset_baker *b, bool prints, bool maps, uint32_t **at, const uint32_t *end) {
+#if MAPS
     uint64_t most = prints ? 65536 : (uint64_t)b->n_textures << SURFACE_TEXTURE_SHIFT;
-    return (maps && collect_by_map(set, b, prints, most, at, end)) || collect_by_sorting(set, b, prints, at, end);
+    if (maps && collect_by_map(set, b, prints, most, at, end)) {
+        return true;
+    }
+#endif
+    (void)maps;
+    return collect_by_sorting(set, b, prints, at, end);
 }
 
 /* The lists for the words of the raw facets, and the room behind them. */
@@ -446,7 +464,7 @@ static bool find_room_with(word_room *r, const aset_baker *b, bool maps) {
 
 /* Maps take less time, and more room. */
 static bool find_room(word_room *r, const aset_baker *b) {
-    return find_room_with(r, b, true) || find_room_with(r, b, false);
+    return (MAPS && find_room_with(r, b, true)) || find_room_with(r, b, false);
 }
 
 /* Words for so many surfaces and footprints, with the lists that they are made from; no maps. */

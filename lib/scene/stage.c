@@ -35,7 +35,7 @@ typedef struct stage {
 } stage;
 
 /* A direction from the right, up and to the front. */
-static aset_vec3 turned(const stage *s, aset_real right, aset_real up, aset_real front) {
+INLINE_BUT_FOR_SIZE aset_vec3 turned(const stage *s, aset_real right, aset_real up, aset_real front) {
     return s->up == ASET_UP_Z ? vec(right, -front, up) : vec(right, up, front);
 }
 
