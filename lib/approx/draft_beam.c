@@ -137,15 +137,14 @@ DRAFT_WORK void meet_facet(meetings *restrict m, int32_t *restrict met, int32_t 
 
 DRAFT_WORK void find_plane(plane *p, meetings *m, const aset_draft *draft, const aset_real middle[3], uint32_t number) {
     static const unsigned char next[4] = {1, 2, 0, 0};
-    uint64_t record = facet_record(draft, number);
-    uint32_t surface = facet_surface(draft, record), footprint = facet_footprint(draft, record);
-    uint32_t in_u = columns_u(footprint), in_v = columns_v(footprint);
-    p->a = surface_axis(surface);
+    const facet f = facet_read(draft, number);
+    uint32_t in_u = columns_u(f.footprint), in_v = columns_v(f.footprint);
+    p->a = (unsigned)f.axis;
     p->u = next[p->a];
     p->v = next[p->u];
-    p->height = facet_height(draft, record) - 2;
-    p->slope_u = surface_slope_u(surface);
-    p->slope_v = surface_slope_v(surface);
+    p->height = f.height - 2;
+    p->slope_u = f.slope_u;
+    p->slope_v = f.slope_v;
     p->middle_a = middle[p->a];
     p->middle_u = middle[p->u];
     p->middle_v = middle[p->v];
@@ -153,8 +152,8 @@ DRAFT_WORK void find_plane(plane *p, meetings *m, const aset_draft *draft, const
     p->high_u = span_high[in_u];
     p->low_v = span_low[in_v];
     p->high_v = span_high[in_v];
-    m->footprint = (uint16_t)footprint;
-    m->down = surface_down(surface);
+    m->footprint = (uint16_t)f.footprint;
+    m->down = f.down;
 }
 
 /* Those of a part's rays that are set, first to last; how many. */

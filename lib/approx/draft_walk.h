@@ -36,13 +36,10 @@ typedef struct way {
 /* The ray against one facet of the voxel that it sees from q, its origin from the voxel's middle. */
 static inline bool meet(const way *w, const aset_real q[3], uint32_t number, aset_real t_min, draft_meeting *m) {
     static const unsigned char next[4] = {1, 2, 0, 0};
-    uint64_t record = facet_record(w->draft, number);
-    uint32_t surface = facet_surface(w->draft, record);
-    aset_real height = facet_height(w->draft, record) - 2;
-    aset_real slope_u = surface_slope_u(surface), slope_v = surface_slope_v(surface);
-    unsigned a = surface_axis(surface), u = next[a], v = next[u];
-    aset_real rate = w->d[a] - slope_u * w->d[u] - slope_v * w->d[v];
-    aset_real t = (height + slope_u * q[u] + slope_v * q[v] - q[a]) / rate;
+    const facet f = facet_read(w->draft, number);
+    unsigned a = (unsigned)f.axis, u = next[a], v = next[u];
+    aset_real rate = w->d[a] - f.slope_u * w->d[u] - f.slope_v * w->d[v];
+    aset_real t = (f.height - 2 + f.slope_u * q[u] + f.slope_v * q[v] - q[a]) / rate;
     aset_real ha = q[a] + t * w->d[a], hu = q[u] + t * w->d[u], hv = q[v] + t * w->d[v];
     aset_real beside = real_max(real_abs(hu), real_abs(hv)), above = real_abs(ha);
     bool in_voxel = (beside <= 2 + BEYOND_SIDES) & (above <= 2 + BEYOND_HEIGHT) & (t > t_min) & (t < w->t_max);
@@ -53,8 +50,8 @@ static inline bool meet(const way *w, const aset_real q[3], uint32_t number, ase
     m->u = hu + 2;
     m->v = hv + 2;
     m->facet = number;
-    m->footprint = (uint16_t)facet_footprint(w->draft, record);
-    m->away = (rate > 0) != surface_down(surface);
+    m->footprint = (uint16_t)f.footprint;
+    m->away = (rate > 0) != f.down;
     return true;
 }
 
