@@ -132,6 +132,15 @@ static void dda_prepare(dda *walk, const aset_slices *slices, const probe *ray) 
     walk->t = 0;
 }
 
+/* Where each axis is crossed next. */
+static void set_next(dda *walk, const aset_slices *slices, const probe *ray) {
+    for (int a = 0; a < 3; a++) {
+        if (ray->moves[a]) {
+            walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (walk->step[a] > 0));
+        }
+    }
+}
+
 /* Whether the crossing of slice k of axis b comes before (t, axis) in the order of all crossings. */
 static bool crossed(const aset_slices *slices, const probe *ray, int b, int32_t k, aset_real t, int axis) {
     aset_real tk = dda_crossing(slices, ray, b, k);
@@ -145,7 +154,11 @@ static bool crossed(const aset_slices *slices, const probe *ray, int b, int32_t 
 static bool settle(const aset_slices *slices, const probe *ray, int b, aset_real t, int axis, const voxel_box *window,
                    int32_t *voxel) {
     aset_real x = ray->origin[b] + t * ray->direction[b];
+#if defined(__OPTIMIZE_SIZE__)
+    int32_t k = aset_slices_locate(slices, b, x);
+#else
     int32_t k = slices->planes[b] == NULL ? slices_guess(slices, b, x) : aset_slices_locate(slices, b, x);
+#endif
     int up = ray->direction[b] > 0;
     int32_t step = up ? 1 : -1, entry = up ? 0 : 1; /* a voxel's entry slice is k + entry, its exit k + 1 - entry */
     k = k < window->low[b] ? window->low[b] : k > window->high[b] ? window->high[b] : k;
@@ -206,8 +219,8 @@ bool aset_dda_enter(dda *walk, const aset_slices *slices, const probe *ray, cons
         } else if (!settle(slices, ray, a, t, axis, window, &walk->voxel[a])) {
             return false;
         }
-        walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (ray->direction[a] > 0));
     }
+    set_next(walk, slices, ray);
     walk->t = t;
     walk->axis = axis;
     return true;
@@ -220,8 +233,7 @@ bool aset_slices_voxel(const aset_slices *slices, const probe *ray, int32_t voxe
         return false;
     }
     for (int a = 0; a < 3; a++) {
-        int32_t k = slices->planes[a] == NULL ? slices_locate_even(slices, a, at[a])
-                                              : locate_in_table(slices->planes[a], (int32_t)slices->n[a] - 1, at[a]);
+        int32_t k = aset_slices_locate(slices, a, at[a]);
         if (k > 0 && ray->direction[a] < 0 && ray->moves[a] && slices_plane(slices, a, k) == at[a]) {
             k--; /* on a slice, going down: that slice is crossed at t = 0, as upwards it is by locate */
         }
@@ -235,11 +247,7 @@ bool aset_dda_inside(dda *walk, const aset_slices *slices, const probe *ray) {
         return false;
     }
     dda_prepare(walk, slices, ray);
-    for (int a = 0; a < 3; a++) {
-        if (ray->moves[a]) {
-            walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (ray->direction[a] > 0));
-        }
-    }
+    set_next(walk, slices, ray);
     return true;
 }
 
@@ -258,8 +266,8 @@ uint32_t aset_dda_land(dda *walk, const aset_slices *slices, const probe *ray, c
                 walk->voxel[a] = before; /* a walk that began on a slice counts it as crossed at t = 0, and never goes back */
             }
         }
-        walk->next[a] = dda_crossing(slices, ray, a, walk->voxel[a] + (walk->step[a] > 0));
         crossings += (walk->voxel[a] - before) * walk->step[a];
     }
+    set_next(walk, slices, ray);
     return (uint32_t)crossings;
 }
