@@ -54,21 +54,18 @@ static void add_voxel(aset_reach_map *map, aset_vec3 middle) {
 }
 
 static void fill(aset_reach_map *map, const aset_draft *draft, const outlook_cells *cells) {
-    uint32_t block = 0, dense = 0;
+    const uint32_t *n = draft->blocks;
+    uint32_t dense = 0;
     for (size_t i = 0; i < (size_t)map->tiles * map->tiles; i++) {
         map->near[i] = REAL_INFINITY;
     }
-    for (uint32_t z = 0; z < draft->blocks[2]; z++) {
-        for (uint32_t y = 0; y < draft->blocks[1]; y++) {
-            for (uint32_t x = 0; x < draft->blocks[0]; x++, block++) {
-                if (!draft_has_block(draft, block)) {
-                    continue;
-                }
-                for (uint64_t marks = draft_marks(draft, dense++); marks != 0; marks &= marks - 1) {
-                    unsigned k = bits_lowest(marks);
-                    add_voxel(map, outlook_middle(cells, x * 4 + k % 4, y * 4 + k / 4 % 4, z * 4 + k / 16));
-                }
-            }
+    for (uint32_t i = 0; i < n[0] * n[1] * n[2]; i++) {
+        if (!draft_has_block(draft, i)) {
+            continue;
+        }
+        for (uint64_t marks = draft_marks(draft, dense++); marks != 0; marks &= marks - 1) {
+            unsigned k = bits_lowest(marks);
+            add_voxel(map, outlook_middle(cells, i % n[0] * 4 + k % 4, i / n[0] % n[1] * 4 + k / 4 % 4, i / n[0] / n[1] * 4 + k / 16));
         }
     }
 }
