@@ -293,6 +293,7 @@ enum { WHOLE_DONE, WHOLE_KEPT, WHOLE_SAMPLED };
 static aset_status take_whole(aset_baker *b, aset_vec3 low, aset_vec3 high, int *what) {
     aset_status status = check_material(b);
     status = status == ASET_OK ? check_box(low, high) : status;
+    b->counter.outline.open = false; /* a polygon in progress is abandoned, as a scene abandons it */
     *what = WHOLE_DONE;
     if (status != ASET_OK) {
         return status;
