@@ -7,6 +7,7 @@
 #if ASET_WITH_APPROXIMATION && ASET_WITH_SPHERES
 
 #include "approx/texture.h"
+#include "scene/entity.h"
 #include "aset/procedural.h"
 
 #define ROOM ((size_t)8 << 20)
