@@ -58,7 +58,6 @@ enum { TEXTURE_WORDS = 8, LIGHT_WORDS = 7, KEPT_HEAD_WORDS = 1 + TEXTURE_WORDS, 
 #define SLOPE_MASK ((1u << SLOPE_BITS) - 1)
 #define SLOPE_STEPS ((1 << (SLOPE_BITS - 1)) - 1)
 #define SURFACE_TEXTURE_SHIFT (3u + 2u * SLOPE_BITS)
-#define SURFACE_TEXTURES_MAX (1u << (32u - SURFACE_TEXTURE_SHIFT))
 
 typedef struct facet {
     int axis;
@@ -85,7 +84,7 @@ static inline aset_real float_of_word(uint32_t word) {
     return (aset_real)f;
 }
 
-/* The bits of record number index: width of them, up to 64. */
+/* The bits of record number index: width of them, fewer than 64. */
 static inline uint64_t words_get(const uint32_t *words, unsigned width, size_t index) {
     size_t bit = index * width;
     unsigned shift = (unsigned)(bit & 31u);
@@ -94,7 +93,7 @@ static inline uint64_t words_get(const uint32_t *words, unsigned width, size_t i
     if (shift + width > 64) {
         value |= (uint64_t)w[2] << (64 - shift);
     }
-    return width < 64 ? value & ((UINT64_C(1) << width) - 1) : value;
+    return value & ((UINT64_C(1) << width) - 1);
 }
 
 static inline void words_put(uint32_t *words, unsigned width, size_t index, uint64_t value) {
@@ -113,52 +112,19 @@ static inline aset_real slope_of(uint32_t code) {
     return (aset_real)((int32_t)code - SLOPE_STEPS) * (R(1) / SLOPE_STEPS);
 }
 
-/* A facet's number of a surface, number of a footprint and height, still packed. */
-static inline uint64_t facet_record(const aset_draft *draft, uint32_t number) {
-    return words_get(draft->facets, draft->width, number);
-}
-
-static inline uint32_t facet_surface(const aset_draft *draft, uint64_t record) {
-    return draft->surfaces[record & ((1u << draft->surface_width) - 1)];
-}
-
-static inline uint32_t facet_footprint(const aset_draft *draft, uint64_t record) {
-    uint32_t print = (uint32_t)(record >> draft->surface_width) & ((1u << draft->footprint_width) - 1);
-    return draft->footprints[print >> 1] >> (print & 1u) * 16 & 0xffffu;
-}
-
-static inline aset_real facet_height(const aset_draft *draft, uint64_t record) {
-    uint32_t code = (uint32_t)(record >> (draft->surface_width + draft->footprint_width));
-    return HEIGHT_LOW + ((aset_real)(int32_t)code + R(0.5)) * HEIGHT_STEP;
-}
-
-static inline unsigned surface_axis(uint32_t surface) {
-    return surface >> 1 & 3u;
-}
-
-static inline bool surface_down(uint32_t surface) {
-    return (surface & 1u) != 0;
-}
-
-static inline aset_real surface_slope_u(uint32_t surface) {
-    return slope_of(surface >> 3 & SLOPE_MASK);
-}
-
-static inline aset_real surface_slope_v(uint32_t surface) {
-    return slope_of(surface >> (3 + SLOPE_BITS) & SLOPE_MASK);
-}
-
 static inline facet facet_read(const aset_draft *draft, uint32_t number) {
-    uint64_t record = facet_record(draft, number);
-    uint32_t surface = facet_surface(draft, record);
+    uint64_t record = words_get(draft->facets, draft->width, number);
+    uint32_t surface = draft->surfaces[record & ((1u << draft->surface_width) - 1)];
+    uint32_t rest = (uint32_t)(record >> draft->surface_width); /* number of a footprint, height */
+    uint32_t print = rest & ((1u << draft->footprint_width) - 1), height = rest >> draft->footprint_width;
     facet f;
-    f.axis = (int)surface_axis(surface);
-    f.down = surface_down(surface);
-    f.slope_u = surface_slope_u(surface);
-    f.slope_v = surface_slope_v(surface);
+    f.axis = (int)(surface >> 1 & 3u);
+    f.down = (surface & 1u) != 0;
+    f.slope_u = slope_of(surface >> 3 & SLOPE_MASK);
+    f.slope_v = slope_of(surface >> (3 + SLOPE_BITS) & SLOPE_MASK);
     f.texture = surface >> SURFACE_TEXTURE_SHIFT;
-    f.footprint = facet_footprint(draft, record);
-    f.height = facet_height(draft, record);
+    f.footprint = draft->footprints[print >> 1] >> (print & 1u) * 16 & 0xffffu;
+    f.height = HEIGHT_LOW + ((aset_real)(int32_t)height + R(0.5)) * HEIGHT_STEP;
     return f;
 }
 

@@ -47,11 +47,6 @@ static inline unsigned bits_width(uint32_t largest) {
     return width;
 }
 
-/* Bytes of an array of count numbers of width bits: whole 64-bit words. */
-static inline uint64_t bits_bytes(uint64_t count, unsigned width) {
-    return (count * width + 63) / 64 * 8;
-}
-
 /* Number index of an array of numbers of width bits, which may lie across two words. */
 static inline uint32_t bits_get(const uint64_t *words, unsigned width, size_t index) {
     size_t bit = index * width;

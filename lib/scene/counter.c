@@ -49,7 +49,7 @@ static aset_status count_object(aset_counter *counter, uint64_t coordinates, ase
     if (counter->counts.objects == UINT32_MAX - 1) {
         return ASET_ERR_LIMIT;
     }
-    aset_status status = aset_entity_use_material(&counter->recent, &is_new);
+    aset_status status = aset_entity_use_material(&counter->recent, UINT32_MAX, &is_new);
     if (status != ASET_OK) {
         return status;
     }

@@ -69,7 +69,7 @@ bool aset_entity_same_look(const aset_material *a, const aset_material *b) {
     return i == MATERIAL_AMOUNTS;
 }
 
-aset_status aset_entity_use_material(aset_recent_materials *recent, bool *is_new) {
+aset_status aset_entity_use_material(aset_recent_materials *recent, uint32_t most, bool *is_new) {
     *is_new = false;
     if (!recent->has_pending) {
         return recent->has_current ? ASET_OK : ASET_ERR_ARGUMENT;
@@ -82,6 +82,9 @@ aset_status aset_entity_use_material(aset_recent_materials *recent, bool *is_new
             recent->current = k - 1;
             return ASET_OK;
         }
+    }
+    if (recent->n == most) {
+        return ASET_ERR_NOMEM;
     }
     recent->list[recent->n % ASET_RECENT] = recent->pending;
     recent->current = recent->n++;

@@ -21,9 +21,9 @@ bool aset_entity_same_look(const aset_material *a, const aset_material *b);
 
 /*
  * The current material as a number below recent->n, made current if it is pending. *is_new: it has to be stored, as number
- * recent->n - 1. ASET_ERR_ARGUMENT if no material has come yet.
+ * recent->n - 1. ASET_ERR_ARGUMENT if no material has come yet; ASET_ERR_NOMEM, and nothing done, if it would be more than most.
  */
-aset_status aset_entity_use_material(aset_recent_materials *recent, bool *is_new);
+aset_status aset_entity_use_material(aset_recent_materials *recent, uint32_t most, bool *is_new);
 
 /* Objects that come whole, checked: their coordinates as a scene keeps them, and their bounds. */
 #if ASET_WITH_SPHERES

@@ -136,15 +136,10 @@ static aset_status check_room(const aset_scene *scene, uint64_t coordinates) {
 
 /* The material that the next object uses is stored, if it is not yet. */
 static aset_status store_material(aset_scene *scene) {
-    aset_recent_materials before = scene->recent;
     bool is_new;
-    aset_status status = aset_entity_use_material(&scene->recent, &is_new);
-    if (status == ASET_OK && is_new) {
-        if (scene->counts.materials == scene->limits.materials) {
-            scene->recent = before;
-            return ASET_ERR_NOMEM;
-        }
-        scene->materials[scene->counts.materials++] = scene->recent.list[scene->recent.current % ASET_RECENT];
+    aset_status status = aset_entity_use_material(&scene->recent, scene->limits.materials, &is_new);
+    if (is_new) {
+        scene->materials[scene->counts.materials++] = scene->recent.pending;
     }
     return status;
 }
