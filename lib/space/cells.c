@@ -285,29 +285,11 @@ static void lay_out(const aset_cells *cells, aset_references *refs) {
     memset(refs->objects, 0xff, (size_t)ASET_BYTES_PACKED(refs->n, refs->width));
 }
 
-/* The passes over all boxes differ in what they do with one. */
-typedef void (*box_action)(build *b, const voxel_box *box);
-
-static void box_blocks(build *b, const voxel_box *box) {
-    aset_cells_mark_blocks(b->cells, box);
-}
-
-static void box_marks(build *b, const voxel_box *box) {
-    aset_cells_mark(b->cells, box);
-}
-
-static void box_counts(build *b, const voxel_box *box) {
-    aset_cells_each_block(b->cells, box, count_references, b);
-}
-
-static void box_places(build *b, const voxel_box *box) {
-    aset_cells_each_block(b->cells, box, place_references, b);
-}
-
-static void each_box(build *b, const aset_scene *scene, const aset_slices *slices, box_action act) {
+/* A pass over all boxes. */
+static void each_box(build *b, const aset_scene *scene, const aset_slices *slices, cells_action act, void *context) {
     for (b->object = 0; b->object < scene->counts.objects; b->object++) {
         voxel_box box = aset_slices_object_box(slices, scene, b->object);
-        act(b, &box);
+        aset_cells_each_block(b->cells, &box, act, context);
     }
 }
 
@@ -315,10 +297,10 @@ void aset_cells_build(aset_cells *cells, aset_references *references, const aset
                       const aset_space_size *size, uint32_t faces, aset_arena *arena) {
     build b = {cells, references, 0};
     aset_cells_take_map(cells, slices, faces, arena);
-    each_box(&b, scene, slices, box_blocks);
+    each_box(&b, scene, slices, mark_map, cells);
     aset_cells_rank_blocks(cells);
     aset_cells_take_marks(cells, arena);
-    each_box(&b, scene, slices, box_marks);
+    each_box(&b, scene, slices, mark_cells, cells);
     (void)aset_cells_rank_marks(cells); /* no more cells than references, which measure has bounded */
 
     references->n = size->n_references;
@@ -328,9 +310,9 @@ void aset_cells_build(aset_cells *cells, aset_references *references, const aset
     size_t bytes = (size_t)ASET_BYTES_PACKED(references->n, references->width);
     references->objects = aset_arena_alloc(arena, bytes, ASET_CATEGORY_REFERENCES);
     memset(references->objects, 0, bytes);
-    each_box(&b, scene, slices, box_counts);
+    each_box(&b, scene, slices, count_references, &b);
     lay_out(cells, references);
-    each_box(&b, scene, slices, box_places);
+    each_box(&b, scene, slices, place_references, &b);
 }
 
 void aset_cells_each(const aset_references *references, cell_look look, void *context) {

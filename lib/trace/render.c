@@ -135,8 +135,7 @@ static aset_status drawing_make(drawing *d, const aset_tracer *tracer, const ase
 aset_status aset_render_rows(const aset_tracer *tracer, const aset_view *view, const aset_picture *picture,
                              uint32_t first_row, uint32_t n_rows, aset_scratch *scratch, aset_statistics *statistics) {
     drawing d = {0};
-    aset_statistics ignored;
-    memset(&ignored, 0, sizeof ignored);
+    aset_statistics ignored = {0};
     aset_status status = drawing_make(&d, tracer, view, picture, scratch, statistics != NULL ? statistics : &ignored);
     if (status != ASET_OK) {
         return status;
