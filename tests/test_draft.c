@@ -491,6 +491,34 @@ static void test_draft__layers_are_in_order_and_cover_once(void **state) {
     assert_true(met > 1000 && several > 50);
 }
 
+/* Rays that meet a ball's far side first came through seams between footprints: as good as none. */
+static void test_draft__seams_are_closed(void **state) {
+    (void)state;
+    uint32_t through = 0;
+    for (uint64_t i = 0; i < 4; i++) {
+        random_state r = random_start(seed_of(340 + i));
+        const aset_vec3 centre = random_in_cube(&r, 1);
+        model m;
+        drawn d;
+        model_start(&m);
+        model_sphere(&m, centre, 3);
+        bake(&d, &m, 24, 24, 24, true);
+        for (uint32_t k = 0; k < 10000; k++) {
+            draft_layer layers[DRAFT_LAYERS_MAX];
+            draft_counts counts;
+            aset_vec3 from = vec_add(centre, vec_scale(aset_vec_unit(random_in_cube(&r, 1)), 12));
+            aset_vec3 to = vec_add(centre, random_in_cube(&r, R(1.4)));
+            aset_vec3 direction = aset_vec_unit(vec_sub(to, from));
+            uint32_t n = aset_draft_layers(layers, &d.draft, DRAFT_PLANE, from, direction, REAL_INFINITY, &counts);
+            check(n > 0, SEED ", ray %u", r.seed, k);
+            through += layers[0].t > 12; /* its middle lies there */
+        }
+        drawn_close(&d);
+        model_free(&m);
+    }
+    check(through <= 3, "%u rays", through);
+}
+
 /*
  * Where something stops a shadow ray, something is met; where most of a ray is stopped by what faces it beyond the voxel that it starts
  * in, a shadow ray is.
@@ -1450,6 +1478,7 @@ int main(void) {
         cmocka_unit_test(test_draft__sentences_and_arguments),
         cmocka_unit_test(test_draft__garbage),
         cmocka_unit_test(test_draft__layers_are_in_order_and_cover_once),
+        cmocka_unit_test(test_draft__seams_are_closed),
         cmocka_unit_test(test_draft__any_agrees_with_closest),
         cmocka_unit_test(test_draft__shadow_rays_ignore_the_voxel_that_they_start_in),
 #if DRAFT_SHADES_BEAMS

@@ -84,7 +84,7 @@ static inline void draft_cover_add_layer(draft_cover *c, const draft_meeting *m,
     draft_layer *layer = c->layers + c->n++;
     layer->t = m->t;
     layer->facet = m->facet;
-    layer->face = 0;
+    layer->face = m->away;
     layer->cover = c->left * cover;
     c->left -= layer->cover;
     if (c->n == DRAFT_LAYERS_MAX || c->left < COVER_LEAST) {

@@ -13,7 +13,7 @@ typedef struct draft_layer {
     aset_real t;
     aset_real cover; /* the share of the ray that ends here */
     uint32_t facet;
-    int face; /* by side (not for a facet's plane): through which the voxel was entered, axis * 2, + 1 going down */
+    int face; /* by side: through which the voxel was entered, axis * 2, + 1 going down; for a facet's plane: 1 if it faces away */
 } draft_layer;
 
 typedef struct draft_counts {
@@ -32,6 +32,14 @@ typedef enum draft_mode { DRAFT_PLANE, DRAFT_SIDE } draft_mode;
  */
 uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
                            aset_vec3 direction, aset_real t_max, draft_counts *counts);
+
+/*
+ * For a ray that has met n layers of facets' planes. Where the first one faces away the ray came to the inside of a surface, mostly
+ * through a seam between two footprints: then what a ray close beside it meets well before is the one layer instead, if that faces
+ * the ray. Where windings are turned, or mixed, it rarely does, and nothing changes. How many layers; the counts grow.
+ */
+uint32_t aset_draft_close_seam(draft_layer layers[DRAFT_LAYERS_MAX], uint32_t n, const aset_draft *draft, aset_vec3 origin,
+                               aset_vec3 direction, draft_counts *counts);
 
 /*
  * Whether anything stops a shadow ray: facets that face the origin, and others beyond the origin's own surroundings, but for
