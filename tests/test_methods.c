@@ -1280,6 +1280,35 @@ static void test_methods__objects_in_one_plane(void **state) {
     }
 }
 
+/*
+ * A flat axis is so thin that from 64 voxels on slices share their places, at some heights and not at others: octree, ARTS and EXCELL
+ * enter an object's box and leave a voxel at one t there.
+ */
+static void test_methods__objects_in_planes_at_many_heights(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 30; i++) {
+        random_state r = random_start(seed_of(720 + i));
+        const aset_space_options options = {.depth = 6 + (uint32_t)(i / 3 % 2)};
+        int axis = (int)(i % 3);
+        aset_real height = (aset_real)random_between(&r, 1, 11);
+        model m;
+        model_start(&m);
+        for (int k = 0; k < 40; k++) {
+            aset_vec3 corner, u = {0, 0, 0}, v = {0, 0, 0};
+            set_axis(&corner, axis, height);
+            set_axis(&corner, (axis + 1) % 3, (aset_real)random_between(&r, -1, 1));
+            set_axis(&corner, (axis + 2) % 3, (aset_real)random_between(&r, -1, 1));
+            set_axis(&u, (axis + 1) % 3, (aset_real)random_between(&r, 0.01, 0.2));
+            set_axis(&v, (axis + 2) % 3, (aset_real)random_between(&r, 0.01, 0.2));
+            model_rectangle(&m, corner, u, v);
+        }
+        for (size_t f = OCTREE; f < METHODS; f++) {
+            assert_true(duel_in(&m, "a plane", families + f, &options, 0, 220) > 0);
+        }
+        model_free(&m);
+    }
+}
+
 /* However thin an axis, no slice lies before the one before it. */
 static void test_methods__slices_ascend_in_a_flat_scene(void **state) {
     (void)state;
@@ -1353,6 +1382,38 @@ static void test_methods__objects_in_one_point(void **state) {
         assert_int_equal(duel_all(&m, "one point", 44), 0);
         model_free(&m);
     }
+}
+#endif
+
+#if ASET_WITH_CONES && ASET_REAL_BITS == 32
+/*
+ * A cone so thin that slices share their places on two axes; a ray that starts where several do, and on the volume's last one on a third
+ * axis, going down on all three, has crossed them all. Its numbers were found by trying millions.
+ */
+static void test_methods__a_ray_from_slices_at_one_place(void **state) {
+    (void)state;
+    const aset_vec3 base = {0x1.ae4f4p-5f, -0x1.8fd6bep-7f, -0x1.f0b8a4p-10f}, apex = {base.x, base.y, -0x1.b8bcc2p-10f};
+    const aset_ray ray = {{0x1.ae4f54p-5f, -0x1.8fd65cp-7f, -0x1.b8b608p-10f}, {-0x1.6dd1cp-13f, -0x1.c020f2p-13f, -0x1.ec242ep-12f}, REAL_INFINITY};
+    model m;
+    stage s;
+    model_start(&m);
+    model_cone(&m, base, 0x1.a9388ep-34, apex, 0x1.909p-35);
+    stage_open_model(&s, &m, ROOM);
+    for (size_t f = 0; f < METHODS; f++) {
+        const bool is_divided = f == SET || f == MSET || f == GRID;
+        const aset_space_options options = {.divisions = {188, 51, 160}};
+        aset_space space;
+        aset_mark mark = aset_arena_mark(&s.arena);
+        aset_hit hit;
+        bool found = false;
+        assert_int_equal(aset_space_build(&space, &s.scene, families[f].method, is_divided ? &options : NULL, &s.arena), ASET_OK);
+        aset_tracer tracer = {.scene = &s.scene, .space = &space};
+        assert_int_equal(aset_closest_hit(&found, &hit, &tracer, &ray, false, NULL), ASET_OK);
+        check(found, "%s", families[f].name);
+        aset_arena_release(&s.arena, &mark);
+    }
+    stage_close(&s);
+    model_free(&m);
 }
 #endif
 
@@ -1748,9 +1809,13 @@ int main(void) {
         cmocka_unit_test(test_methods__one_object),
 #if ASET_WITH_POLYGONS
         cmocka_unit_test(test_methods__objects_in_one_plane),
+        cmocka_unit_test(test_methods__objects_in_planes_at_many_heights),
         cmocka_unit_test(test_methods__slices_ascend_in_a_flat_scene),
         cmocka_unit_test(test_methods__objects_in_slices),
         cmocka_unit_test(test_methods__objects_in_one_point),
+#endif
+#if ASET_WITH_CONES && ASET_REAL_BITS == 32
+        cmocka_unit_test(test_methods__a_ray_from_slices_at_one_place),
 #endif
 #if ASET_WITH_SPHERES
         cmocka_unit_test(test_methods__coincident_spheres),

@@ -32,7 +32,7 @@ void aset_stay_make(stay *s, const dda *walk, const aset_slices *slices, const p
 
 /* In the order of all crossings, is (t, axis) before (u, other)? */
 static bool is_before(aset_real t, int axis, aset_real u, int other) {
-    return t < u || (t == u && axis < other);
+    return t < u || (t == u && axis <= other); /* on one axis: the box and the leaf overlap there, so the entry is the lower slice */
 }
 
 bool aset_stay_enters(const stay *s, const aset_slices *slices, const probe *ray, const aset_box *box) {

@@ -234,8 +234,8 @@ bool aset_slices_voxel(const aset_slices *slices, const probe *ray, int32_t voxe
     }
     for (int a = 0; a < 3; a++) {
         int32_t k = aset_slices_locate(slices, a, at[a]);
-        if (k > 0 && ray->direction[a] < 0 && ray->moves[a] && slices_plane(slices, a, k) == at[a]) {
-            k--; /* on a slice, going down: that slice is crossed at t = 0, as upwards it is by locate */
+        while (k > 0 && ray->direction[a] < 0 && ray->moves[a] && slices_plane(slices, a, k) == at[a]) {
+            k--; /* on a slice, or on several at one place, going down: they are crossed at t = 0, as upwards they are by locate */
         }
         voxel[a] = k;
     }
