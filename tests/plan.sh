@@ -66,6 +66,13 @@ check least-plans "$aset" plan "$dir/scene.nff" --memory "$(sed -n 's/.*needs \(
 if "$aset" plan "$dir/scene.nff" --memory 5000 --header "$dir/plan.h" 2> "$dir/log"; then failed=$((failed + 1)); else passed=$((passed + 1)); fi
 need=$(sed -n 's/.*needs \([0-9]*\) bytes.*/\1/p' "$dir/log")
 try tetra 4 $((need / wide)) # a multiple of 8
+# what is needed goes by the words
+"$aset" scene balls --size 2 | sed 's/^resolution .*/resolution 32 32/' > "$dir/scene.nff"
+for words in "-m grid --approx none" "-m mset" "--approx shadow" "--cells plane" "--grid 8 --approx all --approx-depth 0" \
+    "--approx-depth 0 --cells plane" "--approx all --approx-depth 0 --cells plane" "-m grid --approx primary,reflected --cells normal"; do
+    if "$aset" plan "$dir/scene.nff" --memory 300 $words 2> "$dir/log"; then failed=$((failed + 1)); else passed=$((passed + 1)); fi
+    check "needs-$words" "$aset" plan "$dir/scene.nff" $words --memory "$(sed -n 's/.*needs \([0-9]*\) bytes.*/\1/p' "$dir/log")"
+done
 for method in grid set mset brute; do check "some-plan-takes-$method" grep -q "^$method\$" "$dir/methods"; done
 echo "plan: $passed passed, $failed failed"
 [ $failed = 0 ]

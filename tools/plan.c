@@ -74,19 +74,73 @@ static bool is_standard(const char *path) {
     return path != NULL && strcmp(path, "-") == 0;
 }
 
-static bool tell(const request *r, const plan *p, const measured *m, const plan_wish *wish) {
+#define NEED_TRIALS 6
+#define NEED_MOST (UINT64_C(1) << 44)
+
+/* The least of the plan's bytes above low; 0: none. */
+static uint64_t least_above(const plan *p, uint64_t low) {
+    uint64_t least = 0;
+    for (int i = 0; i < p->n; i++) {
+        const plan_setting *s = &p->settings[i];
+        least = s->fits && s->bytes > low && (least == 0 || s->bytes < least) ? s->bytes : least;
+    }
+    return least;
+}
+
+/*
+ * Bytes for which there is an answer to what is asked for, where there is none for what was given: found by planning with more, as
+ * what is needed goes by the words. 0: for no memory. False after an error line.
+ */
+static bool find_need(uint64_t *bytes, const request *r, measured *m, const plan_wish *wish) {
+    plan p;
+    plan_wish more = *wish;
+    uint64_t low = wish->memory;
+    *bytes = 0;
+    for (more.memory = low > 512 ? 2 * low : 1024; *bytes == 0; more.memory *= 2) {
+        if (more.memory > NEED_MOST) {
+            return true;
+        }
+        if (!plan_make(&p, m, r->scene, &more)) {
+            return false;
+        }
+        low = p.chosen < 0 ? more.memory : low;
+        *bytes = p.chosen < 0 ? 0 : more.memory;
+    }
+    for (int i = 0; i < NEED_TRIALS && (more.memory = least_above(&p, low)) > 0 && more.memory < *bytes; i++) {
+        plan less;
+        if (!plan_make(&less, m, r->scene, &more)) {
+            return false;
+        }
+        if (less.chosen >= 0) {
+            *bytes = more.memory;
+            return true;
+        }
+        low = more.memory;
+    }
+    return true;
+}
+
+static bool tell_need(const request *r, const plan *p, measured *m, const plan_wish *wish) {
+    bool is_free = wish->method == NULL && wish->grid[0] == 0 && !wish->has_approx && wish->cells == CELLS_FLAT;
+    uint64_t need = p->least_bytes;
+    if ((!is_free || need <= wish->memory) && !find_need(&need, r, m, wish)) {
+        return false;
+    }
+    if (need == 0) {
+        tool_error(r->scene, 0, "of no such setting can the error be told, expected other words");
+        return false;
+    }
+    tool_error(r->scene, 0, "the picture needs %" PRIu64 " bytes, has %" PRIu64, need, wish->memory);
+    return false;
+}
+
+static bool tell(const request *r, const plan *p, measured *m, const plan_wish *wish) {
     void (*print)(const plan *p, const plan_setting *s) = r->json ? print_json : print_setting;
     for (int i = 0; i < p->n && r->all; i++) {
         print(p, &p->settings[i]);
     }
-    if (p->chosen < 0 && p->least_bytes <= r->wish.memory) {
-        tool_error(r->scene, 0, "nothing exact fits, and of no approximate setting could the error be told, expected more memory than %zu bytes",
-                   p->exact_bytes);
-        return false;
-    }
     if (p->chosen < 0) {
-        tool_error(r->scene, 0, "the picture needs %zu bytes, has %" PRIu64, p->least_bytes, r->wish.memory);
-        return false;
+        return tell_need(r, p, m, wish);
     }
     const plan_setting *s = &p->settings[p->chosen];
     if (r->wish.time_ms > 0 && s->seconds * 1000 > r->wish.time_ms) {

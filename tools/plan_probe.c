@@ -393,6 +393,9 @@ static bool probe_all(plan *p, probing *q) {
     if (q->wish->cells != CELLS_FLAT && wants_approximate(p, q->wish) && !probe_drafts(p, q)) {
         return false;
     }
+    if (q->wish->cells != CELLS_FLAT && q->levels == &q->given) {
+        return true; /* the rays that the words make approximate are drafts', and were tried */
+    }
     const uint32_t one[3] = {1, 1, 1};
     double last[N_METHODS] = {0};
     uint32_t grid[3];
