@@ -370,6 +370,20 @@ static void test_baker__bad_entities_are_refused_as_a_scene_does(void **state) {
             assert_int_equal(s->material(s->context, &bad), ASET_ERR_ARGUMENT);
             assert_int_equal(s->material(s->context, &material), ASET_OK);
         }
+#if ASET_WITH_POLYGONS && ASET_WITH_SPHERES && ASET_WITH_CONES
+        for (int other = 0; other < (i == 0 ? 3 : 2); other++) { /* another object abandons a polygon in progress */
+            const aset_vec3 p[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+            const aset_real triangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+            assert_int_equal(s->polygon_begin(s->context, 3, false), ASET_OK);
+            assert_int_equal(s->polygon_point(s->context, p, NULL), ASET_OK);
+            assert_int_equal(other == 0   ? s->sphere(s->context, p, 1)
+                             : other == 1 ? s->cone(s->context, p, 1, p + 1, 1)
+                                          : aset_baker_triangles(baker, triangle, 1),
+                             ASET_OK);
+            assert_int_equal(s->polygon_point(s->context, p + 1, NULL), ASET_ERR_GEOMETRY);
+            assert_int_equal(s->polygon_end(s->context), ASET_ERR_GEOMETRY);
+        }
+#endif
     }
     free(baker);
 }
@@ -855,7 +869,7 @@ static void test_baker__bent_polygons_in_any_number_of_passes(void **state) {
     options.keep_none = true;
     bake_model(&whole, &m, &options);
     uint32_t most = 0;
-    for (options.bytes = 60000; options.bytes >= 15000; options.bytes -= 3000) {
+    for (options.bytes = 160000; options.bytes >= 15000; options.bytes -= 3000) {
         baked b;
         bake_model(&b, &m, &options);
         check(same_words(&b.draft, &whole.draft), "%zu bytes, %" PRIu32 " facets, not %" PRIu32, options.bytes,
@@ -1235,6 +1249,40 @@ static void test_baker__a_source_that_changes_is_refused(void **state) {
     }
 }
 
+/* Lights are as many in every pass, whichever comes first: the stage, or passes that bake. */
+static void test_baker__lights_that_change_are_refused(void **state) {
+    (void)state;
+    for (int changes = 0; changes < 4; changes++) { /* from that pass on; 0: never */
+        for (int keep = 0; keep < 2; keep++) {
+            int pass = 0;
+            fickle f = {{100, 100}, {3, 3}, &pass};
+            guarded memory = guarded_open(ROOM);
+            aset_arena arena;
+            aset_baker *baker = malloc(sizeof *baker);
+            aset_bake_options options = options_of(16, 16, 16);
+            options.keep_none = keep == 0;
+            options.bytes = 160000; /* so that there are several passes */
+            bool again = true;
+            aset_status status = aset_arena_init(&arena, memory.block, memory.size);
+            assert_int_equal(aset_baker_init(baker, &arena, &options), ASET_OK);
+            for (int i = 0; again && status == ASET_OK; i++) {
+                aset_sink sink = aset_baker_sink(baker);
+                f.lights[0] = f.lights[1] = changes > 0 && i >= changes ? 2 : 3;
+                assert_int_equal(fickle_emit(&sink, &f), ASET_OK);
+                if (keep == 1) {
+                    const aset_vec3 far = {-500, 0, 0};
+                    assert_int_equal(sink.sphere(sink.context, &far, 300), ASET_OK);
+                }
+                status = aset_baker_pass(baker, &again);
+            }
+            check(status == (changes == 0 ? ASET_OK : ASET_ERR_GEOMETRY), "from pass %d on, %d: %d", changes, keep, (int)status);
+            check(changes > 0 || baker->report.passes > 4, "%u passes", baker->report.passes);
+            free(baker);
+            guarded_close(&memory);
+        }
+    }
+}
+
 /* What is emitted after an end goes nowhere, least of all into memory that is somebody else's by now. */
 static void test_baker__nothing_is_written_after_an_end(void **state) {
     (void)state;
@@ -1552,6 +1600,7 @@ int main(void) {
         cmocka_unit_test(test_baker__models_of_hardly_any_size),
 #if ASET_WITH_SPHERES
         cmocka_unit_test(test_baker__a_source_that_changes_is_refused),
+        cmocka_unit_test(test_baker__lights_that_change_are_refused),
         cmocka_unit_test(test_baker__nothing_is_written_after_an_end),
         cmocka_unit_test(test_baker__tiny_round_things_are_unseen),
 #if ASET_REAL_BITS == 64

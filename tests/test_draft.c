@@ -419,6 +419,11 @@ static void test_draft__sentences_and_arguments(void **state) {
     assert_non_null(strstr(o->why, "version"));
     free(o->words);
     copy_words(o, d.draft.words, d.draft.n_words);
+    o->words[(size_t)(o->draft.textures - o->draft.words) + 6] = word_of_float(R(0.5)); /* transmits */
+    seal(o);
+    assert_int_equal(open_copy(o), ASET_WITH_REFRACTION ? ASET_OK : ASET_ERR_UNSUPPORTED);
+    free(o->words);
+    copy_words(o, d.draft.words, d.draft.n_words);
     o->words[WORD_SURFACES] = o->words[WORD_FACETS] + 1;
     seal(o);
     assert_int_equal(open_copy(o), ASET_ERR_SYNTAX);

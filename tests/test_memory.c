@@ -219,6 +219,32 @@ static void test_memory__automatic_divisions_leave_the_reserve(void **state) {
     model_free(&m);
 }
 
+/* Where even the coarsest divisions leave too little, that is said; where they are given, the reserve is the caller's affair. */
+static void test_memory__a_reserve_that_cannot_be_left(void **state) {
+    (void)state;
+    const aset_method *const methods[] = {&aset_mset, &aset_set, &aset_grid, &aset_octree, &aset_brute};
+    random_state r = random_start(seed_of(311));
+    model m;
+    model_random(&m, &r, 60, 5, 0.1, 2);
+    for (size_t i = 0; i < COUNT_OF(methods); i++) {
+        stage s;
+        aset_space space;
+        aset_space_options options;
+        memset(&options, 0, sizeof options);
+        stage_open_model(&s, &m, 20000);
+        options.reserve = s.arena.size - s.arena.used - 8;
+        size_t used = s.arena.used;
+        aset_status status = aset_space_build(&space, &s.scene, methods[i], &options, &s.arena);
+        check(status == (methods[i] == &aset_brute ? ASET_OK : ASET_ERR_NOMEM), "%s: %d", aset_method_name(methods[i]), (int)status);
+        check(status == ASET_OK || (s.arena.missing > 0 && s.arena.used == used), "%s", aset_method_name(methods[i]));
+        options.reserve = 0;
+        options.textures = ASET_TEXTURES_MAX + 1;
+        assert_int_equal(aset_space_build(&space, &s.scene, methods[i], &options, &s.arena), ASET_ERR_ARGUMENT);
+        stage_close(&s);
+    }
+    model_free(&m);
+}
+
 /* Given divisions are the caller's: they do not shrink. */
 static void test_memory__given_divisions_do_not_shrink(void **state) {
     (void)state;
@@ -498,6 +524,7 @@ int main(void) {
         cmocka_unit_test(test_memory__measure_is_the_same_with_any_arena),
         cmocka_unit_test(test_memory__automatic_divisions_shrink_to_fit),
         cmocka_unit_test(test_memory__automatic_divisions_leave_the_reserve),
+        cmocka_unit_test(test_memory__a_reserve_that_cannot_be_left),
         cmocka_unit_test(test_memory__given_divisions_do_not_shrink),
         cmocka_unit_test(test_memory__scratch_takes_what_its_macro_says),
 #if ASET_WITH_SPHERES

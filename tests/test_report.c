@@ -276,6 +276,12 @@ static void test_report__json_without_parts(void **state) {
     check_text(json, "grid", "[0,0,0]");
     check_number(json, "structure.density", 0);
     check_text(json, "time.render_s", "0.000000");
+    const aset_counts counts = {.objects = 7, .spheres = 7};
+    x.report.counts = &counts; /* the text has what the JSON has */
+    json_of(&x, json, sizeof json);
+    check_number(json, "scene.objects", 7);
+    assert_true(aset_report_text(json, sizeof json, &x.report) < sizeof json);
+    assert_non_null(strstr(json, "7 objects: 0 polygons, 0 patches, 7 spheres"));
     subject_close(&x);
 }
 

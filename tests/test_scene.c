@@ -479,6 +479,8 @@ static void test_scene__refuses_bad_polygons(void **state) {
     pair_open(&p);
     for (int i = 0; i < 2; i++) {
         assert_int_equal(aset_sink_polygon(p.sinks + i, corners, NULL, 5), ASET_ERR_ARGUMENT);
+        assert_int_equal(p.sinks[i].polygon_begin(p.sinks[i].context, 5, false), ASET_ERR_ARGUMENT);
+        assert_int_equal(p.sinks[i].polygon_point(p.sinks[i].context, corners, NULL), ASET_ERR_GEOMETRY);
     }
     pair_material(&p);
     for (int i = 0; i < 2; i++) {

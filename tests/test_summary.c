@@ -7,6 +7,7 @@
 #if ASET_WITH_APPROXIMATION
 
 #include "approx/summary.h"
+#include "approx/texture.h"
 
 #define ROOM ((size_t)4 << 20)
 enum { PARTS = 8 };
@@ -85,6 +86,24 @@ static void check_averages(const model *m, const stage *s, const aset_space *spa
     }
     free(low);
     free(high);
+}
+
+/* A cell of one object has its material, where that is of whole units: also where half a unit more cannot be told from a unit more. */
+static void test_summary__one_material_is_kept_as_it_is(void **state) {
+    (void)state;
+    const aset_real units[] = {1, 65537, 4194305, 8388607, 8388609, 8388611, 16777215};
+    for (size_t i = 0; i < COUNT_OF(units); i++) {
+        aset_material material, mean;
+        texture_sum sum;
+        memset(&material, 0, sizeof material);
+        memset(&sum, 0, sizeof sum);
+        material.diffuse = material.shine = units[i] / 65536;
+        for (int n = 0; n < 3; n++) {
+            aset_texture_sum_add(&sum, &material);
+            mean = aset_texture_average(&sum);
+            check(mean.shine == material.shine && mean.diffuse == material.diffuse, "%g units, %d times", (double)units[i], n + 1);
+        }
+    }
 }
 
 static void test_summary__textures_are_equal_weight_averages(void **state) {
@@ -506,6 +525,7 @@ static void test_summary__of_a_space_without_objects(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_summary__one_material_is_kept_as_it_is),
         cmocka_unit_test(test_summary__textures_are_equal_weight_averages),
 #if ASET_WITH_SPHERES
         cmocka_unit_test(test_summary__every_object_has_the_same_weight),

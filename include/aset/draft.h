@@ -88,7 +88,7 @@ typedef struct aset_baker {
     aset_real kept_from;
     aset_vec3 low, high;      /* of what the cells hold */
     aset_real origin[3], scale[3], size[3]; /* scene to columns; a column's size */
-    uint32_t n[3], blocks[3], max_points, n_points, n_given;
+    uint32_t n[3], blocks[3], max_points, n_lights;
     uint32_t floor_block, ceiling_block; /* this pass bakes the blocks from floor up to, not including, ceiling */
     aset_real *points;
     aset_real *crossings;

@@ -32,11 +32,12 @@ typedef struct aset_space_options {
                        where that does not fit */
     uint32_t leaf;  /* octree, ARTS, EXCELL: objects in a leaf that is not halved any more; 0 means 1 */
     size_t reserve;        /* automatic divisions leave so many bytes of the arena free, for a scratch, say */
-    uint32_t textures;     /* and, unless 0, room for a summary of that capacity */
+    uint32_t textures;     /* and, unless 0, room for a summary of that capacity, at most ASET_TEXTURES_MAX */
 } aset_space_options;
 
 #define ASET_DIVISIONS_MAX 2048u
 #define ASET_DEPTH_TREE_MAX 10u
+#define ASET_TEXTURES_MAX 65536u
 
 /* What was built, counted the same way for every method (house definitions: a leaf is a smallest cell). */
 typedef struct aset_structure {

@@ -26,8 +26,6 @@ typedef struct aset_summary {
     uint32_t merged; /* cells that had to take another texture than their own */
 } aset_summary;
 
-#define ASET_TEXTURES_MAX 65536u
-
 /*
  * The capacity taken when 0 is asked for: 32 for each material, rounded up to a power of two, from 16 to 4096. It bounds the
  * list; the bytes are those of the textures that there are.

@@ -267,6 +267,7 @@ aset_status aset_baker_triangles(aset_baker *baker, const aset_real *coordinates
         return ASET_ERR_ARGUMENT;
     }
     aset_status status = check_material(baker);
+    baker->counter.outline.open = false; /* a polygon in progress is abandoned, as a scene abandons it */
     if (status != ASET_OK || baker->phase != PHASE_BAKE) {
         return status != ASET_OK ? status : measure_triangles(baker, coordinates, n);
     }

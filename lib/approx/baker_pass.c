@@ -263,7 +263,7 @@ static aset_status bake_again(aset_baker *b, size_t need) {
 /* The stage takes its memory when all its counts are known; its entities come with the next pass. */
 static aset_status start_stage(aset_baker *b) {
     b->report.kept = b->counter.counts.objects;
-    if (b->report.kept != b->n_kept) {
+    if (b->report.kept != b->n_kept || b->counter.counts.lights != b->n_lights) {
         return ASET_ERR_GEOMETRY; /* not the same source as in the first pass */
     }
 #if ASET_RECENT < ASET_KEPT_MAX
@@ -294,6 +294,7 @@ static aset_status end_measuring(aset_baker *b) {
         b->arena->missing = most;
         return ASET_ERR_NOMEM;
     }
+    b->n_lights = b->counter.counts.lights;
     choose_kept(b);
     if (b->n_kept == 0) {
         return start_stage(b);
@@ -316,9 +317,8 @@ static aset_status end_measuring(aset_baker *b) {
 }
 
 static aset_status end_baking(aset_baker *b) {
-    const aset_scene *stage = &b->stage;
-    if (b->stage_sink.context == stage &&
-        (stage->counts.lights != stage->limits.lights || stage->counts.objects != stage->limits.objects)) {
+    const aset_counts *given = b->stage_sink.context == &b->stage ? &b->stage.counts : &b->counter.counts;
+    if (given->lights != b->n_lights || given->objects != b->n_kept) {
         return ASET_ERR_GEOMETRY;
     }
     if (b->failure == ASET_ERR_NOMEM) {

@@ -202,6 +202,16 @@ static aset_material read_material(const uint32_t *w) {
     return m;
 }
 
+/* Does a material, by its words, need what is switched off? */
+static bool is_beyond_switches(const uint32_t *w) {
+#if ASET_WITH_REFRACTION
+    (void)w;
+    return false;
+#else
+    return float_of_word(w[6]) > 0; /* its transmittance */
+#endif
+}
+
 aset_material aset_draft_material(const aset_draft *draft, uint32_t texture) {
     return read_material(draft->textures + (size_t)texture * TEXTURE_WORDS);
 }
@@ -260,6 +270,9 @@ static aset_status read_kept(const uint32_t *w, uint32_t left, uint32_t *n, cons
     uint32_t n_points = w[0] >> 8 & 0xffffu, coordinates = 0;
     aset_material material = read_material(w + 1);
     material.one_sided = w[0] >> 31 != 0;
+    if (is_beyond_switches(w + 1)) {
+        return ASET_ERR_UNSUPPORTED;
+    }
     switch (kind) {
     case KIND_POLYGON: coordinates = 3 * n_points; break;
     case KIND_PATCH: coordinates = 6 * n_points; break;
@@ -369,6 +382,11 @@ aset_status aset_draft_open(aset_draft *draft, const uint32_t *words, size_t n_w
     wrong = wrong != NULL ? wrong : check_facets(&opened);
     if (wrong != NULL) {
         return refuse(wrong, why);
+    }
+    for (uint32_t i = 0; i < opened.n_textures; i++) {
+        if (is_beyond_switches(opened.textures + (size_t)i * TEXTURE_WORDS)) {
+            return ASET_ERR_UNSUPPORTED;
+        }
     }
     aset_mark mark = aset_arena_mark(arena);
     aset_status status = make_stage(&opened, arena);

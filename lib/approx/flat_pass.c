@@ -55,10 +55,11 @@ static aset_status begin_blocks(aset_flat *f) {
 
 /* No room for need bytes: once more with coarser divisions if they are ours to choose. */
 static aset_status begin_again(aset_flat *f, size_t need) {
-    if (!f->is_auto || !aset_slices_coarsen(f->options.divisions, need / 8 > left_of(f))) {
+    size_t whole = whole_bytes_sum(f->arena->used - f->stage_mark.used, need);
+    aset_arena_release(f->arena, &f->stage_mark);
+    if (!f->is_auto || !aset_slices_coarsen(f->options.divisions, whole / 8 > left_of(f))) {
         return ASET_ERR_NOMEM;
     }
-    aset_arena_release(f->arena, &f->stage_mark);
     return begin_blocks(f);
 }
 

@@ -31,7 +31,9 @@ void aset_texture_sum_add(texture_sum *sum, const aset_material *material) {
     aset_real parts[TEXTURE_PARTS];
     parts_of(material, parts);
     for (int i = 0; i < TEXTURE_PARTS; i++) {
-        sum->parts[i] += (uint64_t)real_to_whole(real_min(parts[i], PART_MAX) * UNIT + R(0.5));
+        aset_real units = real_min(parts[i], PART_MAX) * UNIT;
+        int64_t whole = real_to_whole(units); /* units + 1/2 would be rounded itself where units are large */
+        sum->parts[i] += (uint64_t)(whole + (units - real_of_whole(whole) >= R(0.5)));
     }
     sum->n++;
 }

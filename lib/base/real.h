@@ -10,7 +10,12 @@
 #include "aset/types.h"
 
 #include <float.h>
+#include <limits.h>
 #include <math.h>
+
+#if UINT_MAX < 0xffffffff
+#error "int has fewer than 32 bits, which libaset's arithmetic counts on"
+#endif
 
 /*
  * The promise needs every operation rounded to its own type: not the x87's registers (FLT_EVAL_METHOD 2), nor float computed

@@ -333,10 +333,14 @@ static void text_memory(text *t, const aset_arena *arena) {
 size_t aset_report_text(char *buffer, size_t size, const aset_report *report) {
     text t = {buffer, size, 0};
     const uint64_t times[] = {time_units(report->load_s, 3), time_units(report->build_s, 3), time_units(report->render_s, 3)};
-    if (report->tracer->scene != NULL) {
+    bool has_scene = report->counts != NULL || report->tracer->scene != NULL, has_space = has_scene || report->tracer->space != NULL;
+#if ASET_WITH_DRAFTS
+    has_space = has_space || report->tracer->draft != NULL;
+#endif
+    if (has_scene) {
         text_scene(&t, report);
     }
-    if (report->tracer->scene != NULL || report->tracer->space != NULL) {
+    if (has_space) {
         text_space(&t, report);
     }
     if (report->statistics != NULL) {

@@ -65,7 +65,12 @@ static aset_status count_object(aset_counter *counter, uint64_t coordinates, ase
 #if ASET_WITH_POLYGONS
 static aset_status count_polygon_begin(void *context, uint32_t n_points, bool with_normals) {
     aset_counter *counter = context;
-    return aset_outline_begin(&counter->outline, n_points, with_normals);
+    aset_status status = aset_outline_begin(&counter->outline, n_points, with_normals);
+    if (status == ASET_OK && !counter->recent.has_pending && !counter->recent.has_current) { /* here, as the builder refuses it */
+        counter->outline.open = false;
+        status = ASET_ERR_ARGUMENT;
+    }
+    return status;
 }
 
 static aset_status count_polygon_point(void *context, const aset_vec3 *point, const aset_vec3 *normal) {

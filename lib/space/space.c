@@ -42,7 +42,8 @@ static aset_status choose_size(aset_space_size *size, const aset_scene *scene, c
             return ASET_ERR_ARGUMENT;
         }
     }
-    return size->depth <= ASET_DEPTH_TREE_MAX ? ASET_OK : ASET_ERR_ARGUMENT;
+    bool fine = size->depth <= ASET_DEPTH_TREE_MAX && (options == NULL || options->textures <= ASET_TEXTURES_MAX);
+    return fine ? ASET_OK : ASET_ERR_ARGUMENT;
 }
 
 /* One measurement, with the arena's free bytes as scratch if they are worth more than the stack's kilobyte. */
@@ -129,7 +130,8 @@ aset_status aset_space_build(aset_space *space, const aset_scene *scene, const a
     if (status == ASET_OK) {
         status = measure_to_fit(&size, scene, method, options, arena, is_auto);
     }
-    if (status == ASET_OK && !aset_arena_fits(arena, size.total)) {
+    size_t kept = is_auto && options != NULL ? options->reserve : 0; /* room for a summary is an estimate, and may be missing */
+    if (status == ASET_OK && !aset_arena_fits(arena, whole_bytes_sum(size.total, kept))) {
         status = ASET_ERR_NOMEM;
     }
     if (status != ASET_OK) {
