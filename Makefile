@@ -1,5 +1,6 @@
 # libaset: `make help` lists the targets.
 .DEFAULT_GOAL := all
+.DELETE_ON_ERROR:
 
 VERSION := $(shell sed -n 's/^\#define ASET_VERSION "\(.*\)"/\1/p' include/aset/config.h)
 SOVERSION := $(shell sed -n 's/^\#define ASET_ABI //p' include/aset/config.h)
@@ -51,6 +52,8 @@ all: $(ARCHIVES) $(SHARED) $(BUILD)/aset examples ## build everything: libraries
 
 # Other switches than the last time: all is compiled anew, or the objects would not fit together.
 SWITCHES := $(filter -DASET_%,$(CPPFLAGS) $(CFLAGS))
+# What a program of the tests has to be compiled with to go with this library.
+LIKE_THE_LIBRARY = $(SWITCHES) $(filter -fsanitize=% --coverage,$(CFLAGS))
 $(BUILD)/switches: FORCE
 	@mkdir -p $(@D)
 	@echo '$(SWITCHES)' | cmp -s - $@ || echo '$(SWITCHES)' > $@
@@ -88,7 +91,7 @@ $(BUILD)/aset: $(call objects,$(TOOL),obj) $(ARCHIVES)
 $(BUILD)/examples/%: examples/%.c $(wildcard examples/*.h) $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) -ffp-contract=off -Iinclude -I$(@D) \
+	$(Q)$(CC) $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) $(LDFLAGS) -ffp-contract=off -Iinclude -I$(@D) \
 	  $(PNG_CFLAGS) -o $@ $< $(ARCHIVES) $(PNG_LIBS) -lm
 
 # The draft that the program on a microcontroller has in its flash.
@@ -105,21 +108,21 @@ mpi: $(BUILD)/cluster/mpi_render ## the example for a cluster (needs Open MPI: m
 $(BUILD)/cluster/mpi_render: examples/cluster/mpi_render.c $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,MPICC)
-	$(Q)mpicc $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) -ffp-contract=off -Iinclude -o $@ $< $(ARCHIVES) -lm
+	$(Q)mpicc $(CPPFLAGS) -std=c99 -Wall -Wextra -pedantic -Wshadow $(POSIX) $(CFLAGS) $(LDFLAGS) -ffp-contract=off -Iinclude -o $@ $< $(ARCHIVES) -lm
 
 # --- tests ---
 
 TOOL_TESTABLE := $(call objects,$(filter-out tools/aset.c,$(TOOL)),obj)
-$(BUILD)/tests/%: tests/%.c $(wildcard tests/support/*) $(TOOL_TESTABLE) $(ARCHIVES)
+$(BUILD)/tests/%: tests/%.c $(wildcard tests/support/* tests/*.h) tests/convert.c $(TOOL_TESTABLE) $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(CMOCKA_CFLAGS) -Itests -Itools -MMD -MP -o $@ $< \
+	$(Q)$(CC) $(CPPFLAGS) $(STRICT) $(POSIX) $(CFLAGS) $(LDFLAGS) $(CMOCKA_CFLAGS) -Itests -Itools -MMD -MP -o $@ $< \
 	  $(wildcard tests/support/*.c) $(TOOL_TESTABLE) $(ARCHIVES) $(CMOCKA_LIBS) $(PNG_LIBS) -lpthread -lm
 
 $(BUILD)/tests/determinism: tests/determinism.c $(ARCHIVES)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(CPPFLAGS) $(filter-out -Ilib,$(STRICT)) $(CFLAGS) -o $@ $< $(PROCEDURAL_A) $(LOAD_A) $(CORE_A) -lm
+	$(Q)$(CC) $(CPPFLAGS) $(filter-out -Ilib,$(STRICT)) $(CFLAGS) $(LDFLAGS) -o $@ $< $(PROCEDURAL_A) $(LOAD_A) $(CORE_A) -lm
 
 # The same tests of what beams do where no processor's wide registers are taken.
 $(BUILD)/tests/test_draft_narrow: tests/test_draft.c lib/approx/draft_beam.c lib/approx/draft_shadows.c $(wildcard tests/support/*) $(ARCHIVES)
@@ -168,12 +171,12 @@ IN_TURN := $(LONG_FIRST) $(filter-out $(LONG_FIRST),$(TESTS)) $(SCRIPTS)
 FAILED := $(BUILD)/failed
 test: ## run the tests, in under two minutes
 	@rm -rf $(FAILED) && mkdir -p $(FAILED)
-	@$(MAKE) --no-print-directory -k -Otarget $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS)) test-each || touch $(FAILED)/make
+	@$(MAKE) --no-print-directory -k -Otarget $(if $(findstring jobserver,$(MAKEFLAGS))$(filter -j%,$(MAKEFLAGS)),,-j$(JOBS)) test-each || touch $(FAILED)/make
 	@failed=$$(ls $(FAILED)); if [ -n "$$failed" ]; then echo "failed:" $$failed; exit 1; fi; echo "all tests passed"
 
 test-each: $(addprefix run-,$(IN_TURN) $(CHECKS)) all
 # $(call each,NAME,COMMAND)
-each = @echo "== $(1)"; touch $(FAILED)/$(1); $(2) && rm $(FAILED)/$(1)
+each = @echo "== $(1)"; mkdir -p $(FAILED); touch $(FAILED)/$(1); $(2) && rm $(FAILED)/$(1)
 $(addprefix run-,$(TESTS)): run-%: $(BUILD)/tests/%
 	$(call each,$*,$<)
 run-tool.sh: $(BUILD)/aset
@@ -236,7 +239,7 @@ check-layers: ## who includes whom, as DESIGN.md says
 	@bash tests/layers.sh
 
 check-link: $(CORE_A) ## the core's undefined symbols, and that other layout switches do not link
-	@bash tests/link.sh $(BUILD) "$(CC)"
+	@bash tests/link.sh $(BUILD) "$(CC)" "$(LIKE_THE_LIBRARY)"
 
 check-recursion: ## no function of the core calls itself, directly or through others
 	@bash tests/recursion.sh $(BUILD)
@@ -257,10 +260,10 @@ check-cluster: $(BUILD)/aset $(BUILD)/tests/convert $(if $(shell command -v mpic
 	@bash tests/cluster.sh $(BUILD)/aset $(BUILD)/tests/convert $(if $(shell command -v mpicc),$(BUILD)/cluster/mpi_render,-)
 
 check-readme: $(ARCHIVES) ## the programs in README and docs compile and run, and the README's is examples/smallest.c
-	@bash tests/docs.sh $(BUILD) "$(CC)" quick
+	@bash tests/docs.sh $(BUILD) "$(CC)" "$(LIKE_THE_LIBRARY)" quick
 
 check-docs: $(BUILD)/aset $(BUILD)/tests/convert examples ## the same, and the commands that README and docs show
-	@bash tests/docs.sh $(BUILD) "$(CC)"
+	@bash tests/docs.sh $(BUILD) "$(CC)" "$(LIKE_THE_LIBRARY)"
 
 check-valgrind: $(BUILD)/aset examples ## the demo's programs under valgrind
 	bash tests/valgrind.sh $(BUILD)
@@ -360,13 +363,14 @@ deps-consumers: ## install what make consumers and check-abi want besides: a C++
 # Written anew each time: it depends on PREFIX. The shared library has all that the archives have.
 $(BUILD)/libaset.pc: FORCE
 	@mkdir -p $(@D)
+	@rm -f $@ # it may be another user's, who installed
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' 'Name: libaset' \
 	  'Description: approximate ray tracing in a memory budget fixed at compile time' 'Version: $(VERSION)' \
 	  'Libs: -L$${libdir} -laset' 'Libs.private: -laset_procedural -laset_load -laset -lm' 'Cflags: -I$${includedir}$(addprefix $() ,$(SWITCHES))' > $@
 
 install: install-lib install-tool install-share ## install under DESTDIR/PREFIX; install-lib: all but the tool, for other switches (CPPFLAGS)
 install-lib: $(ARCHIVES) $(SHARED) $(BUILD)/libaset.pc
-	$(call one_word,PREFIX)$(call one_word,LIBDIR)
+	$(call one_word,PREFIX)$(call one_word,LIBDIR)$(if $(filter /%,$(PREFIX)),,$(error PREFIX=$(PREFIX): expected a path from the root, which pkg-config's file can say))
 	install -d "$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(PREFIX)/include/aset"
 	install -m 644 include/aset/*.h "$(DESTDIR)$(PREFIX)/include/aset"
 	install -m 644 $(ARCHIVES) "$(DESTDIR)$(LIBDIR)"

@@ -8,6 +8,7 @@
 # Times are wall clock, exact and planned by turns; the median of the turns' ratios counts, for a busy machine slows both down.
 # Three turns, or for short ones as many as take two seconds; where that is out of bounds, up to fifteen, with the same bounds.
 set -eu
+export LC_ALL=C # numbers with a point
 aset=$1
 dir=$2
 shift 2

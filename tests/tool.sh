@@ -793,6 +793,16 @@ sheet_size() { # WIDTHxHEIGHT, then the words behind -o
     [ "$(png_size s.png)" = "$size" ] || fail "sheet $*: $(png_size s.png), expected $size"
 }
 
+# A sheet of many pictures goes over none of them.
+sheet_keeps_its_pictures() {
+    local i
+    works render "$scenes/balls.nff" -s 4x3 -o a.ppm
+    for i in $(seq 300); do cp a.ppm "p$i.ppm"; done
+    tool sheet -o p1.ppm p1.ppm p?.ppm p??.ppm p???.ppm
+    refused 1 "aset: p1.ppm: "
+    cmp -s p1.ppm a.ppm || fail "the first picture is not what it was"
+}
+
 sheet_lays_out() {
     works render "$scenes/balls.nff" -s 40x30 -o a.ppm
     works render "$scenes/tetra.nff" -s 20x50 -o b.png
@@ -1392,7 +1402,7 @@ bad_scene_on_standard_input bad_cut_off_files bad_prefixes bad_letters_for_numbe
 bad_announced_but_missing_points bad_order bad_views bad_objects bad_camera_options extreme_coordinates
 scene_text_is_read_freely budget_exact budget_approximate flat_is_streamed budget_of_two_threads budget_is_what_info_says
 automatic_grid statistics_are_json statistics_are_the_same_for_every_run report_is_text scenes_are_written
-scene_into_render models_on_standard_input compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_refuses
+scene_into_render models_on_standard_input compare_figures_and_status compare_refuses tables_repeat_their_counts sheet_lays_out sheet_shows_the_pictures sheet_keeps_its_pictures sheet_refuses
 full_disk file_size_limit closed_pipe outputs_that_cannot_be outputs_that_are_taken words_of_render_elsewhere plan_and_info_at_the_edges plan_keeps_its_word plan_takes_renders_words tree_depth_is_kept old_output interrupted progress_bar
 trade_table trade_best_marks trade_says_what_render_says trade_takes_renders_words trade_within_memory trade_of_a_model trade_resumes trade_page trade_refuses
 "

@@ -67,10 +67,18 @@ static bool is_taken(const char *name) {
         " auto break case char const continue default do double else enum extern float for goto if inline "
         "int long register restrict return short signed sizeof static struct switch typedef union "
         "unsigned void volatile while "
-        "main bool true false NULL size_t ptrdiff_t offsetof int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t "
-        "intptr_t uintptr_t intmax_t uintmax_t ";
+        "asm bool catch class delete explicit export friend mutable namespace new operator private protected public template this throw "
+        "try typename using virtual "
+        "main true false NULL offsetof linux unix ";
     char word[NAME_BYTES + 2];
     int length = snprintf(word, sizeof word, " %s ", name);
+    static const char *const endings[] = {"_t", "_MIN", "_MAX"}; /* of the headers' types and limits */
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        size_t n = strlen(name), end = strlen(endings[i]);
+        if (n >= end && strcmp(name + n - end, endings[i]) == 0) {
+            return true;
+        }
+    }
     return length < (int)sizeof word && (strstr(words, word) != NULL || strncmp(name, "aset_", 5) == 0 || strncmp(name, "ASET_", 5) == 0);
 }
 

@@ -20,10 +20,10 @@ cat <<'END'
 
 # Files that end in one of the words given, and all folders.
 _aset_files() {
-    local cur=$1 file IFS=$'\n' ending
+    local cur=$1 file ending
     shift
     COMPREPLY=()
-    for file in $(compgen -f -- "$cur"); do
+    while IFS= read -r file; do
         if [ -d "$file" ]; then
             COMPREPLY+=("$file")
             continue
@@ -33,7 +33,13 @@ _aset_files() {
             *."$ending") COMPREPLY+=("$file") ;;
             esac
         done
-    done
+    done < <(compgen -f -- "$cur")
+    compopt -o filenames 2>/dev/null || true
+}
+
+# All files (-f) or folders (-d); names may hold blanks and what a shell makes names of.
+_aset_any() {
+    mapfile -t COMPREPLY < <(compgen "$1" -- "$2")
     compopt -o filenames 2>/dev/null || true
 }
 
@@ -41,7 +47,7 @@ _aset_operand() {
     case $1 in
     scene) COMPREPLY=($(compgen -W "$_aset_scenes" -- "$2")) ;;
     compare | join | sheet) _aset_files "$2" png ppm ;;
-    thumb) COMPREPLY=($(compgen -d -- "$2")) && compopt -o filenames 2>/dev/null ;;
+    thumb) _aset_any -d "$2" ;;
     tables) COMPREPLY=() ;;
     render) _aset_files "$2" nff obj stl ply draft ;;
     *) _aset_files "$2" nff obj stl ply ;;
@@ -69,8 +75,8 @@ _aset() {
     follows=$(_aset_value "$command:$prev")
     case $follows in
     words*) COMPREPLY=($(compgen -W "${follows#words }" -- "$cur")) ;;
-    files) COMPREPLY=($(compgen -f -- "$cur")) && compopt -o filenames 2>/dev/null ;;
-    folders) COMPREPLY=($(compgen -d -- "$cur")) && compopt -o filenames 2>/dev/null ;;
+    files) _aset_any -f "$cur" ;;
+    folders) _aset_any -d "$cur" ;;
     nothing) ;;
     *)
         case $cur in

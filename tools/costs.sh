@@ -2,6 +2,7 @@
 # What a step of each method costs, in instructions counted by callgrind (repeatable, whatever else the machine does), on tetra of
 # size 6 at 100 x 100: the table in DESIGN.md. costs.sh ASET DIRECTORY
 set -eu
+export LC_ALL=C # numbers with a point
 aset=$1
 dir=$2
 mkdir -p "$dir"

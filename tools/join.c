@@ -118,7 +118,8 @@ static bool read_png(piece *p, uint8_t *row) {
 
 static bool open_ppm(piece *p) {
     unsigned long width = 0, height = 0, largest = 0;
-    int n = fscanf(p->file, "P6 %7lu %7lu %7lu", &width, &height, &largest);
+    char behind[2];
+    int n = fscanf(p->file, "P6%1[ \t\r\n]%7lu %7lu %7lu", behind, &width, &height, &largest) - 1;
     int blank = getc(p->file);
     if (n != 3 || width < 1 || height < 1 || width > TOOL_SIDE_MAX || height > TOOL_SIDE_MAX || largest != 255 ||
         (blank != '\n' && blank != ' ' && blank != '\t' && blank != '\r')) {

@@ -106,13 +106,14 @@ int tool_option_next(int argc, char **argv, const char *shorts, const struct opt
         return '?';
     }
     opterr = 0;
+    int before = optind;
     int found = getopt_long(argc, argv, quiet_shorts, longs, NULL);
     if (found != ':' && found != '?') {
         return found;
     }
     /* getopt steps over a long option before it complains, but not over a cluster of short ones */
     const char *word = argv[optind - 1];
-    bool is_long = strncmp(word, "--", 2) == 0;
+    bool is_long = optind > before && strncmp(word, "--", 2) == 0;
     char letter[3] = {'-', (char)optopt, '\0'};
     if (!is_long) {
         word = letter;

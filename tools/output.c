@@ -37,10 +37,9 @@ static struct place {
     struct stat old;    /* what the target is so far; st_ino 0: nothing */
 } places[PLACES];
 
-/* The last files that were opened for reading. */
-#define INPUTS 256
-static struct stat inputs[INPUTS];
-static unsigned n_inputs; /* ever */
+/* The files that were opened for reading, for as long as the program runs. */
+static struct stat *inputs;
+static size_t n_inputs, inputs_room;
 
 static const int deadly_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGALRM, SIGVTALRM, SIGXCPU, SIGUSR1, SIGUSR2};
 #define N_DEADLY (sizeof deadly_signals / sizeof deadly_signals[0])
@@ -215,7 +214,7 @@ static bool stat_folder(const char *target, struct stat *folder) {
 
 /* Is the place's target a file that has been read, or another output's? Says so. */
 static bool is_taken(const struct place *place, const char *path) {
-    for (unsigned i = 0; i < INPUTS && i < n_inputs; i++) {
+    for (size_t i = 0; i < n_inputs; i++) {
         if (place->old.st_ino != 0 && same_file(&place->old, &inputs[i])) {
             tool_error(path, 0, "it is read, too, expected another file for the output");
             return true;
@@ -242,12 +241,22 @@ bool tool_input_note(FILE *stream, const char *path) {
             return false;
         }
     }
-    for (unsigned i = 0; i < INPUTS && i < n_inputs; i++) {
+    for (size_t i = 0; i < n_inputs; i++) {
         if (same_file(&inputs[i], &status)) {
             return true;
         }
     }
-    inputs[n_inputs++ % INPUTS] = status;
+    if (n_inputs == inputs_room) {
+        size_t room = 2 * inputs_room + 16;
+        struct stat *more = realloc(inputs, room * sizeof *more);
+        if (more == NULL) {
+            tool_error(path, 0, "the machine has no memory to note that it is read");
+            return false;
+        }
+        inputs = more;
+        inputs_room = room;
+    }
+    inputs[n_inputs++] = status;
     return true;
 }
 

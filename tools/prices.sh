@@ -3,6 +3,7 @@
 # Bytes are the least that will do, and times are taken with these.
 # Times are ratios to the exact picture's, build and drawing, medians of interleaved runs on one thread.
 set -eu
+export LC_ALL=C # numbers with a point
 aset=$1
 dir=$2
 runs=${RUNS:-5}

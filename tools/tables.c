@@ -345,7 +345,11 @@ int command_tables(int argc, char **argv) {
     if (r.wants_help) {
         return tool_help(help);
     }
-    if (!measure(rows, &r) || !tool_output_open(&output, r.output)) {
+    if (!tool_output_open(&output, r.output)) {
+        return TOOL_FAILED;
+    }
+    if (!measure(rows, &r)) {
+        tool_output_abort(&output);
         return TOOL_FAILED;
     }
     const page p = {output.stream, r.markdown, rows, r.side, r.rounds};
