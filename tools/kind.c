@@ -10,6 +10,7 @@
 #include "tool.h"
 
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 /* Longer comments than this at the start of an OBJ without a name hide what it is. */
@@ -93,7 +94,7 @@ static tool_kind kind_of_bytes(const look *l) {
     if (strncmp(l->bytes, "ply", 3) == 0 && (l->bytes[3] == '\n' || l->bytes[3] == '\r')) {
         return TOOL_KIND_PLY;
     }
-    if (is_binary_stl(l) || (strncmp(start, "solid", 5) == 0 && strstr(start, "facet") != NULL)) {
+    if (is_binary_stl(l) || (strncasecmp(start, "solid", 5) == 0 && (strstr(start, "facet") != NULL || strstr(start, "FACET") != NULL))) {
         return TOOL_KIND_STL;
     }
     return strlen(l->bytes) == l->n && is_obj(l->bytes) ? TOOL_KIND_OBJ : TOOL_KIND_NONE;

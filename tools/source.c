@@ -17,7 +17,7 @@
 
 /* Of vertices: some 87000 points in float. Faces that jump about in a smaller one cost a read of a page each time. */
 #define WINDOW_BYTES 1048576u
-#define N_MATERIALS 64u
+#define N_MATERIALS 1024u /* 60 kB: a name that is not kept costs a reading of the library */
 
 /* ---- bytes ---- */
 

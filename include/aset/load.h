@@ -166,13 +166,16 @@ aset_status aset_load_ply(const aset_sink *sink, aset_read read, void *context, 
 
 /*
  * Wavefront OBJ: v, f (v, v/vt, v//vn, v/vt/vn; negative indices count back from the last one read), lines joined by a
- * backslash at their end, and with smooth vn. usemtl takes its material from the libraries named by mtllib so far, the
- * first of that name; everything else (o g s vt l p, curves, a fourth number of v ...) is passed over line by line.
+ * backslash at their end, and with smooth vn; a normal that is not there is none. usemtl takes its material from the libraries
+ * named by mtllib before the next face, the first of that name; everything else (o g s vt l p, curves, a fourth number of v ...)
+ * is passed over line by line. A # begins a comment, but within usemtl's, mtllib's and newmtl's names only where a blank or
+ * the line's end follows: "Material #25" is a name.
  *
  * Of a material: Kd is the fill, and diffuse becomes 1; Ks gives specular by its largest component and Ns shine; d gives
  * transmittance 1 - d, or else Tr gives transmittance; Ni is the refraction index. What is missing comes from
- * options->material; numbers below 0 are taken as 0, d and Tr above 1 as 1; maps and the other words are ignored, illum
- * too. ASET_ERR_LIMIT: more than 500 bytes of names of libraries; a library's or a material's name of more than 255.
+ * options->material; numbers below 0 are taken as 0, d and Tr above 1 as 1. illum below 3 (no reflection; many programs write
+ * 2 and a Ks of 0.5 for whatever is matt) makes specular 0, which would be a mirror here. Maps and the other words are ignored.
+ * ASET_ERR_LIMIT: more than 500 bytes of names of libraries, one more for each; a library's or a material's name of more than 255.
  */
 aset_status aset_load_obj(const aset_sink *sink, aset_read read, void *context, const aset_load_options *options,
                           aset_load_report *report);

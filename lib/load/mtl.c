@@ -24,7 +24,7 @@ typedef struct search {
     bool found;
     aset_reader reader;
     /* the material in hand */
-    bool open, has_d;
+    bool open, has_d, is_matt;
     uint64_t open_name;
     aset_material material;
     aset_real opacity, transmittance;
@@ -109,6 +109,7 @@ static void close_material(search *s) {
         return;
     }
     s->open = false;
+    s->material.specular = s->is_matt ? 0 : s->material.specular;
     uint32_t state = FOUND;
     const aset_real transmittance = s->has_d ? 1 - s->opacity : s->transmittance;
 #if ASET_WITH_REFRACTION
@@ -128,7 +129,7 @@ static void open_material(search *s, const char *name) {
     s->open = true;
     s->open_name = hash_of(name);
     s->material = s->mtl->fallback;
-    s->has_d = false;
+    s->has_d = s->is_matt = false;
     s->opacity = 1;
 #if ASET_WITH_REFRACTION
     s->transmittance = s->material.transmittance;
@@ -216,6 +217,9 @@ static aset_status read_line(search *s) {
     } else if (aset_reader_is(reader, "Tr")) {
         status = read_one(s, &s->transmittance);
         s->transmittance = at_most_one(s->transmittance);
+    } else if (aset_reader_is(reader, "illum")) {
+        status = read_one(s, &c[0]);
+        s->is_matt = c[0] < 3; /* 3 and more reflect */
     } else if (aset_reader_is(reader, "Ni")) {
         status = read_one(s, &c[0]);
 #if ASET_WITH_REFRACTION
@@ -309,11 +313,17 @@ static aset_status search_one(search *s, const char *name, bool *there, aset_loa
     return status;
 }
 
-/* What stands behind one "mtllib": a name with blanks in it, or several names. */
+/* What stands behind one "mtllib": a name with blanks in it, or in quotes, or several names. */
 static aset_status search_line(search *s, const char *names, aset_load_report *report) {
     char name[ASET_MTL_NAME];
     bool there;
     aset_status status = search_one(s, names, &there, report);
+    const size_t whole = strlen(names);
+    if (status == ASET_OK && !there && whole > 2 && names[0] == '"' && names[whole - 1] == '"') { /* as some write it */
+        memcpy(name, names + 1, whole - 2);
+        name[whole - 2] = '\0';
+        status = search_one(s, name, &there, report);
+    }
     if (there || strpbrk(names, " \t") == NULL) {
         return status;
     }

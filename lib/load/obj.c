@@ -20,6 +20,8 @@ typedef struct obj {
     aset_vertices vertices;
     aset_mtl mtl;
     aset_corner corners[3]; /* of the fan: first, last but one, last */
+    char name[ASET_MTL_NAME]; /* of the material for the next faces, where is_named: it is looked for when one comes */
+    bool is_named;
 } obj;
 
 static aset_status fail(obj *file, const char *what, const char *expected) {
@@ -52,7 +54,7 @@ static aset_status read_record(obj *file, uint32_t list, const char *expected) {
     return status == ASET_OK ? aset_reader_skip_line(reader) : status;
 }
 
-/* ---- faces ---- */
+/* ---- corners of faces ---- */
 
 /* A whole number with a sign from text[*at] on, 0 if there is none; beyond 2^33 it only stays large. */
 static int64_t take_index(const char *text, size_t *at) {
@@ -116,18 +118,64 @@ static aset_status get_corner(obj *file, aset_corner *corner) {
     corner->point = (aset_vec3){record[0], record[1], record[2]};
     corner->has_normal = file->model.smooth && normal != 0;
     if (status == ASET_OK && corner->has_normal) {
-        if (!resolve(normal, file->vertices.count[NORMALS], &index)) {
-            return fail(file, "a normal that is not there", "the number of a normal before the face");
-        }
+        corner->has_normal = resolve(normal, file->vertices.count[NORMALS], &index); /* one that is not there is none */
+    }
+    if (status == ASET_OK && corner->has_normal) {
         status = aset_vertices_get(&file->vertices, NORMALS, index, record);
         corner->normal = (aset_vec3){record[0], record[1], record[2]};
     }
     return aset_model_store_answer(&file->model, status, 0);
 }
 
+/* ---- materials ---- */
+
+static aset_status read_library_names(obj *file) {
+    char names[ASET_MTL_NAME];
+    size_t length;
+    aset_reader *reader = &file->model.reader;
+    const aset_status status = aset_reader_rest(reader, names, sizeof names, &length);
+    if (status == ASET_OK && length > 0 && !aset_mtl_add_library(&file->mtl, names)) {
+        return aset_reader_fail(reader, ASET_ERR_LIMIT, "more names of material libraries than can be kept", "500 bytes");
+    }
+    return status;
+}
+
+/* The material that was named last, of the libraries that have been named by now. */
+static aset_status find_material(obj *file) {
+    bool found = true;
+    aset_model *model = &file->model;
+    file->is_named = false;
+    aset_status status = aset_mtl_find(&file->mtl, file->name, &model->wanted, &found, model->reader.report);
+    model->reader.report->unknown_materials += status == ASET_OK && !found ? 1u : 0u;
+    if (status == ASET_ERR_UNSUPPORTED && model->reader.report->what == NULL) {
+        return aset_reader_fail(&model->reader, status, "transmission was switched off when the library was compiled",
+                                "materials that are opaque");
+    }
+    return status;
+}
+
+static aset_status read_material_name(obj *file) {
+    size_t length;
+    aset_status status = file->is_named ? find_material(file) : ASET_OK; /* no face had it: it is told if there is none */
+    if (status == ASET_OK) {
+        status = aset_reader_rest(&file->model.reader, file->name, sizeof file->name, &length);
+        file->model.wanted = file->model.fallback;
+        file->is_named = status == ASET_OK && length > 0;
+    }
+    return status;
+}
+
+/* ---- faces ---- */
+
 static aset_status read_face(obj *file) {
     aset_reader *reader = &file->model.reader;
     aset_corner *c = file->corners;
+    if (file->is_named) {
+        const aset_status named = find_material(file);
+        if (named != ASET_OK) {
+            return named;
+        }
+    }
     for (uint64_t n = 0;; n++) {
         aset_status status = aset_reader_keep(reader);
         if (status != ASET_OK || reader->starts_line) {
@@ -148,38 +196,6 @@ static aset_status read_face(obj *file) {
             return status;
         }
     }
-}
-
-/* ---- materials ---- */
-
-static aset_status read_library_names(obj *file) {
-    char names[ASET_MTL_NAME];
-    size_t length;
-    aset_reader *reader = &file->model.reader;
-    const aset_status status = aset_reader_rest(reader, names, sizeof names, &length);
-    if (status == ASET_OK && length > 0 && !aset_mtl_add_library(&file->mtl, names)) {
-        return aset_reader_fail(reader, ASET_ERR_LIMIT, "more names of material libraries than can be kept", "500 bytes");
-    }
-    return status;
-}
-
-static aset_status read_material_name(obj *file) {
-    char name[ASET_MTL_NAME];
-    size_t length;
-    bool found = true;
-    aset_model *model = &file->model;
-    aset_status status = aset_reader_rest(&model->reader, name, sizeof name, &length);
-    model->wanted = model->fallback;
-    if (status != ASET_OK || length == 0) {
-        return status;
-    }
-    status = aset_mtl_find(&file->mtl, name, &model->wanted, &found, model->reader.report);
-    model->reader.report->unknown_materials += status == ASET_OK && !found ? 1u : 0u;
-    if (status == ASET_ERR_UNSUPPORTED && model->reader.report->what == NULL) {
-        return aset_reader_fail(&model->reader, status, "transmission was switched off when the library was compiled",
-                                "materials that are opaque");
-    }
-    return status;
 }
 
 /* ---- the file ---- */
@@ -216,13 +232,15 @@ aset_status aset_load_obj(const aset_sink *sink, aset_read read, void *context, 
     aset_vertices_init(&file.vertices, options != NULL ? options->vertices : NULL, 3, file.model.smooth ? 2 : 1);
     aset_mtl_init(&file.mtl, options, &file.model.fallback);
     memset(file.corners, 0, sizeof file.corners);
+    file.is_named = false;
     reader->joiner = '\\';
     reader->cut = "the file ends within a line";
     status = aset_reader_skip_mark(reader);
     while (status == ASET_OK) {
         status = aset_reader_next(reader);
         if (status == ASET_OK && reader->length == 0) {
-            return aset_model_end(&file.model);
+            status = file.is_named ? find_material(&file) : ASET_OK;
+            return status == ASET_OK ? aset_model_end(&file.model) : status;
         }
         if (status == ASET_OK) {
             status = read_line(&file);

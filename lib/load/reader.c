@@ -256,7 +256,13 @@ aset_status aset_reader_rest(aset_reader *reader, char *text, size_t size, size_
         if (status == ASET_OK && byte >= 0 && byte == reader->joiner) {
             status = take_joint(reader, &joint);
         }
-        const bool comment = byte == reader->comment && (n == 0 || full || n > *length);
+        bool comment = byte == reader->comment && (n == 0 || full || n > *length);
+        if (status == ASET_OK && byte >= 0 && comment) { /* "Material #25" and "#0000ff" are names */
+            const unsigned char *ahead;
+            size_t there;
+            status = aset_reader_peek(reader, 2, &ahead, &there);
+            comment = status == ASET_OK && (there < 2 || is_blank(ahead[1]) || is_line_end(ahead[1]));
+        }
         if (status == ASET_OK && byte >= 0 && comment) {
             status = skip_to_line_end(reader, &last);
         }
