@@ -204,6 +204,11 @@ threads_draw_the_same_picture() {
     works render "$scenes/balls.nff" -s 16x2 -o few.ppm
     works render "$scenes/balls.nff" -s 16x2 -j 40 -o many.ppm
     same few.ppm many.ppm "more threads than rows"
+    for threads in 1 8 9 100; do # counts, too, whatever room beams have
+        works render "$scenes/balls.nff" -s 64x64 --approx all --approx-depth 0 --cells plane --grid 20 --memory 700K -j $threads --stats $threads.json
+        sed -i 's/"time".*//; s/"memory".*//' $threads.json
+        same 1.json $threads.json "counts of $threads threads"
+    done
 }
 
 rows_are_pieces_of_the_picture() {

@@ -92,21 +92,22 @@ static bool choose_view(prepared *p, const settings *s) {
 
 /* Voxels of a band for which the arena has room besides a reach; 0: it has none. */
 static uint32_t beam_voxels(const prepared *p, const settings *s) {
-    uint32_t threads = s->threads > BEAM_THREADS ? s->threads : BEAM_THREADS, voxels = BEAM_VOXELS_MOST;
-    size_t left = p->arena.size - p->arena.used, reach = ASET_BYTES_REACH(REACH_TILES, p->draft.stage.counts.lights);
-    while (voxels > BEAM_VOXELS_LEAST &&
-           (voxels > p->draft.n_facets / 4 || left < reach + threads * ASET_BYTES_BEAMS(voxels))) {
+    uint32_t voxels = BEAM_VOXELS_MOST;
+    size_t left = p->arena.size - p->arena.used + scratch_bytes(s);
+    size_t fixed = BEAM_THREADS * ASET_BYTES_SCRATCH(s->depth) + ASET_BYTES_REACH(REACH_TILES, p->draft.stage.counts.lights);
+    while (voxels > BEAM_VOXELS_LEAST && (voxels > p->draft.n_facets / 4 || left < fixed + BEAM_THREADS * ASET_BYTES_BEAMS(voxels))) {
         voxels /= 2;
     }
-    return left < reach + threads * ASET_BYTES_BEAMS(voxels) ? 0 : voxels;
+    return left < fixed + BEAM_THREADS * ASET_BYTES_BEAMS(voxels) ? 0 : voxels;
 }
 
 /*
- * What lets a draft be drawn in less time, if the arena has room for it besides. How much it has is asked for eight threads at least,
- * so that counts of cells are the same for every usual number of them.
+ * What lets a draft be drawn in less time, if the arena has room for it besides, and with how many threads. How much room it has is
+ * asked for eight of them, and none draws without what the others have: counts of cells are the same for every number.
  */
 static void take_aids(prepared *p, const settings *s) {
     p->mark = aset_arena_mark(&p->arena);
+    p->n_threads = s->threads;
     if (!p->is_drafted || s->cells != CELLS_PLANE) {
         return;
     }
@@ -115,9 +116,11 @@ static void take_aids(prepared *p, const settings *s) {
         return;
     }
     p->tracer.reach = &p->reach;
-    for (uint32_t i = 0; i < s->threads && aset_beams_init(&p->beams[i], voxels, &p->arena) == ASET_OK; i++) {
+    uint32_t i = 0;
+    for (; i < s->threads && aset_beams_init(&p->beams[i], voxels, &p->arena) == ASET_OK; i++) {
         p->scratches[i].beams = &p->beams[i];
     }
+    p->n_threads = i > 0 ? i : p->n_threads;
 }
 
 static void choose_tracer(prepared *p, const settings *s) {

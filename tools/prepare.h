@@ -87,6 +87,7 @@ typedef struct prepared {
     aset_space space;
     aset_summary summary;
     aset_draft draft;
+    uint32_t n_threads; /* that draw: those asked for, or of these as many as the room is for */
     bool is_drafted, is_streamed; /* there is a draft; no object is held but those that a draft keeps */
     aset_counts counts;           /* of the source */
     aset_scratch *scratches; /* one for each thread, */

@@ -378,7 +378,7 @@ static bool draw_picture(const request *r, const prepared *p, aset_statistics *s
     (void)pthread_mutex_init(&c.lock, NULL);
     (void)pthread_cond_init(&c.turn, NULL);
     tool_progress_start("rows", c.end - c.first, r->quiet);
-    bool done = draw(&c, r->settings.threads, statistics);
+    bool done = draw(&c, c.p->n_threads, statistics);
     tool_progress_end();
     (void)pthread_cond_destroy(&c.turn);
     (void)pthread_mutex_destroy(&c.lock);
