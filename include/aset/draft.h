@@ -41,6 +41,7 @@ typedef struct aset_draft {
     unsigned surface_width, footprint_width, width; /* bits */
     aset_real low[3], size[3], per_size[3];         /* the box's corner, a column's size, its inverse */
     aset_real column;                               /* the mean of size */
+    bool closes_seams;                              /* its voxels hold single surfaces, not many small things */
 } aset_draft;
 
 /* All zero is the default. */

@@ -136,12 +136,11 @@ DRAFT_WORK void meet_facet(meetings *restrict m, int32_t *restrict met, int32_t 
 }
 
 DRAFT_WORK void find_plane(plane *p, meetings *m, const aset_draft *draft, const aset_real middle[3], uint32_t number) {
-    static const unsigned char next[4] = {1, 2, 0, 0};
     const facet f = facet_read(draft, number);
     uint32_t in_u = columns_u(f.footprint), in_v = columns_v(f.footprint);
     p->a = (unsigned)f.axis;
-    p->u = next[p->a];
-    p->v = next[p->u];
+    p->u = facet_next(p->a);
+    p->v = facet_next(p->u);
     p->height = f.height - 2;
     p->slope_u = f.slope_u;
     p->slope_v = f.slope_v;

@@ -50,7 +50,8 @@ static uint32_t meet_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_dra
 
 uint32_t aset_draft_close_seam(draft_layer layers[DRAFT_LAYERS_MAX], uint32_t n, const aset_draft *draft, aset_vec3 origin,
                                aset_vec3 direction, draft_counts *counts) {
-    if (n == 0 || layers[0].face == 0) {
+    aset_real t_max = n > 0 ? layers[0].t - SEAM_DEPTH * draft->column : 0;
+    if (!draft->closes_seams || !(t_max > 0) || layers[0].face == 0) {
         return n;
     }
     const aset_real d[3] = {real_abs(direction.x), real_abs(direction.y), real_abs(direction.z)};
@@ -63,10 +64,10 @@ uint32_t aset_draft_close_seam(draft_layer layers[DRAFT_LAYERS_MAX], uint32_t n,
         for (int a = 0; a < 3; a++) {
             o[a] += a != longest ? (aset_real)side * SEAM_BESIDE * draft->size[a] : 0;
         }
-        uint32_t n_met = meet_layers(met, draft, DRAFT_PLANE, vec(o[0], o[1], o[2]), direction, layers[0].t, &more);
+        uint32_t n_met = meet_layers(met, draft, DRAFT_PLANE, vec(o[0], o[1], o[2]), direction, t_max, &more);
         counts->cells += more.cells;
         counts->nonempty += more.nonempty;
-        if (n_met > 0 && met[0].face == 0 && layers[0].t - met[0].t > SEAM_DEPTH * draft->column) {
+        if (n_met > 0 && met[0].face == 0) {
             layers[0] = met[0];
             layers[0].cover = 1;
             return 1;

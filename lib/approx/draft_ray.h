@@ -36,7 +36,8 @@ uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draf
 /*
  * For a ray that has met n layers of facets' planes. Where the first one faces away the ray came to the inside of a surface, mostly
  * through a seam between two footprints: then what a ray close beside it meets well before is the one layer instead, if that faces
- * the ray. Where windings are turned, or mixed, it rarely does, and nothing changes. How many layers; the counts grow.
+ * the ray. Where windings are turned, or mixed, it rarely does, and nothing changes; nor does it where voxels hold many small things,
+ * which all have insides behind them. How many layers; the counts grow.
  */
 uint32_t aset_draft_close_seam(draft_layer layers[DRAFT_LAYERS_MAX], uint32_t n, const aset_draft *draft, aset_vec3 origin,
                                aset_vec3 direction, draft_counts *counts);

@@ -35,9 +35,8 @@ typedef struct way {
 
 /* The ray against one facet of the voxel that it sees from q, its origin from the voxel's middle. */
 static inline bool meet(const way *w, const aset_real q[3], uint32_t number, aset_real t_min, draft_meeting *m) {
-    static const unsigned char next[4] = {1, 2, 0, 0};
     const facet f = facet_read(w->draft, number);
-    unsigned a = (unsigned)f.axis, u = next[a], v = next[u];
+    unsigned a = (unsigned)f.axis, u = facet_next(a), v = facet_next(u);
     aset_real rate = w->d[a] - f.slope_u * w->d[u] - f.slope_v * w->d[v];
     aset_real t = (f.height - 2 + f.slope_u * q[u] + f.slope_v * q[v] - q[a]) / rate;
     aset_real ha = q[a] + t * w->d[a], hu = q[u] + t * w->d[u], hv = q[v] + t * w->d[v];

@@ -128,11 +128,16 @@ static inline facet facet_read(const aset_draft *draft, uint32_t number) {
     return f;
 }
 
+/* The axis behind one in turn: u of a, v of u. */
+static inline unsigned facet_next(unsigned axis) {
+    static const unsigned char next[4] = {1, 2, 0, 0};
+    return next[axis & 3u];
+}
+
 /* A normal in the scene's lengths, of any length but 0, on the side that the facet faces. */
 static inline aset_vec3 facet_faces(const aset_draft *draft, const facet *f) {
-    static const unsigned char next[4] = {1, 2, 0, 0};
     aset_real n[3], towards = f->down ? R(-1) : R(1);
-    int u = next[f->axis], v = next[u];
+    unsigned u = facet_next((unsigned)f->axis), v = facet_next(u);
     n[f->axis] = towards * draft->per_size[f->axis];
     n[u] = -towards * f->slope_u * draft->per_size[u];
     n[v] = -towards * f->slope_v * draft->per_size[v];
@@ -182,6 +187,9 @@ static inline void draft_find_facets(const aset_draft *draft, uint32_t block, un
 
 /* Sets what follows from the header's words: sizes and where the sections are. True: they end with the last word. */
 bool aset_draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words);
+
+/* Sets what follows from the marks: whether rays may close seams. */
+void aset_draft_look(aset_draft *draft);
 
 /* Gives the stage's entities to a sink. */
 aset_status aset_draft_read_stage(const aset_draft *draft, const aset_sink *sink);

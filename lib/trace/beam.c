@@ -381,11 +381,13 @@ static void meet(beam_rays *rays, query_hit *kept, const aset_beams *beams, uint
     statistics->nonempty_visited += rays->met.n_visited;
     for (uint32_t i = 0; i < n; i++) {
         draft_cover *met = &rays->met.cover[i];
-        draft_counts counts = {0, 0};
-        met->n = aset_draft_close_seam(met->layers, met->n, tracer->draft, draft_lane(rays->origins, i), draft_lane(rays->directions, i),
-                                       &counts);
-        statistics->cells_visited += counts.cells;
-        statistics->nonempty_visited += counts.nonempty;
+        if (met->n > 0 && met->layers[0].face != 0 && tracer->draft->closes_seams) {
+            draft_counts counts = {0, 0};
+            met->n = aset_draft_close_seam(met->layers, met->n, tracer->draft, draft_lane(rays->origins, i),
+                                           draft_lane(rays->directions, i), &counts);
+            statistics->cells_visited += counts.cells;
+            statistics->nonempty_visited += counts.nonempty;
+        }
         statistics->approx_hits += met->n > 0;
     }
 }
