@@ -33,7 +33,7 @@ typedef enum aset_category {
 /* The same of more bytes than a size_t may hold. */
 #define ASET_ROUND_64(bytes) (((uint64_t)(bytes) + (ASET_ALIGN - 1u)) / ASET_ALIGN * ASET_ALIGN)
 
-/* Declares a static, aligned block of at least bytes bytes, for aset_arena_init(&arena, name, sizeof name). */
+/* Declares, behind the word static, an aligned block of at least bytes bytes, for aset_arena_init(&arena, name, sizeof name). */
 #define ASET_ARENA_BLOCK(name, bytes) uint64_t name[((size_t)(bytes) + 7u) / 8u]
 
 /* The fields are for reading; only the functions below write them. */
@@ -52,7 +52,7 @@ typedef struct aset_mark {
 
 /*
  * Starts an arena on the caller's block of size bytes, which must be aligned to ASET_ALIGN and stay valid as long as
- * anything in it is used. A size of 0 with any block is allowed: every allocation then fails. ASET_ERR_ARGUMENT: no arena,
+ * anything in it is used. A size of 0 with any aligned block, or none, is allowed: every allocation of a byte then fails. ASET_ERR_ARGUMENT: no arena,
  * no block of a size above 0, or a block that is not aligned.
  *
  * Everything begins here, so here the arithmetic is looked at: ASET_ERR_ARITHMETIC if the library was compiled to fuse a * b + c
@@ -68,7 +68,7 @@ aset_status aset_arena_init(aset_arena *arena, void *block, size_t size);
  */
 void *aset_arena_alloc(aset_arena *arena, size_t bytes, aset_category category);
 
-/* True if bytes more bytes fit; else false, and missing is set. A builder asks this once for its whole need. */
+/* True if bytes more bytes, a multiple of ASET_ALIGN, fit; else false, and missing is set. A builder asks this once for its whole need. */
 bool aset_arena_fits(aset_arena *arena, size_t bytes);
 
 aset_mark aset_arena_mark(const aset_arena *arena);

@@ -29,7 +29,10 @@ ASET_HEADER_BEGIN
 #define ASET_KEPT_MAX 16u
 #define ASET_KEPT_POINTS_MAX 8u
 
-/* What a draft is drawn from. The fields are private but words, n_words and stage, which are for reading. */
+/*
+ * What a draft is drawn from. Its cells are seen from both sides, also those of one-sided materials, and no ray is curtailed in them.
+ * The fields are private but words, n_words and stage, which are for reading.
+ */
 typedef struct aset_draft {
     const uint32_t *words; /* the whole draft: to be written to a file, or compiled in as a const array */
     size_t n_words;
@@ -50,8 +53,8 @@ typedef struct aset_bake_options {
                               most 128 on the longest axis */
     size_t bytes;          /* the most that the bake may take of the arena; 0: ASET_BYTES_BAKE of the divisions and the stage,
                               or more if the model turns out to need it, or what is free if that is less. Fewer bytes cost
-                              more passes over the source; below 512 kB (1 MB in double), 8 bytes for each 64 voxels and 16 for each
-                              point of the largest polygon apart, also textures of cells with mixed materials */
+                              more passes over the source; below 512 kB (1 MB in double), the stage, 8 bytes for each 64 voxels and 16
+                              (32 in double) for each point of the largest polygon apart, also textures of cells with mixed materials */
     bool keep_none;        /* no object is kept exact */
 } aset_bake_options;
 

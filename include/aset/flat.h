@@ -78,7 +78,8 @@ aset_sink aset_flat_sink(aset_flat *flat);
  * Ends a pass. *again: the source is wanted once more. ASET_ERR_NOMEM: with arena->missing more bytes the next try succeeds
  * or tells what else is missing; in the end that is least, to the byte. More than that, at most 72 bytes for each cell of
  * several materials, saves passes. ASET_ERR_GEOMETRY: other entities than the counter's; ASET_ERR_LIMIT: over 2^32 - 2 cells, or
- * sums that could leave 64 bits. After an error the arena is as before aset_flat_init.
+ * sums that could leave 64 bits. After an error the arena is as before aset_flat_init. Where the source itself fails within a pass,
+ * this is still to be called: it tells other entities, and gives the arena back.
  */
 aset_status aset_flat_pass(aset_flat *flat, bool *again);
 

@@ -132,7 +132,7 @@ aset_sink aset_counter_sink(aset_counter *counter);
 /*
  * Takes ASET_BYTES_SCENE(limits->objects, limits->coordinates, limits->materials, limits->lights) bytes from the arena for a
  * scene of at most so many; a counter's counts are the exact limits. The scene starts empty, background black, no view.
- * ASET_ERR_NOMEM: too small an arena; ASET_ERR_LIMIT: more than 2^32 - 2 coordinates, or 2^29 materials or more.
+ * ASET_ERR_NOMEM: too small an arena; ASET_ERR_LIMIT: more than 2^32 - 2 coordinates or objects, or 2^29 materials or more.
  */
 aset_status aset_scene_init(aset_scene *scene, aset_arena *arena, const aset_counts *limits);
 

@@ -185,8 +185,8 @@ typedef struct aset_large {
 #ifndef ASET_LARGE_MAX
 #define ASET_LARGE_MAX 16u
 #endif
-#if ASET_LARGE_MAX < 1 || ASET_LARGE_MAX > 16
-#error "ASET_LARGE_MAX is 1 to 16: a walk hands that many objects over at once"
+#if ASET_LARGE_MAX < 1 || ASET_LARGE_MAX > 16 || (ASET_LARGE_MAX != 16 && !ASET_HOSTILE)
+#error "ASET_LARGE_MAX is 16, for library and program are to agree on sizes; a hostile build may take 1 to 16"
 #endif
 
 typedef struct aset_space {

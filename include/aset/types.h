@@ -22,7 +22,8 @@ typedef double aset_real;
 /* Private: what answers rays for a space, a summary or a draft. */
 struct aset_answers;
 
-/* What a call says. 0 is success; everything else is negative and leaves the objects it was given as they were. */
+/* What a call says. 0 is success; everything else is negative and leaves the objects it was given as they were,
+ * but for a call's own output that it begins with clearing: aset_baker_init's baker and aset_flat_init's flat. */
 typedef enum aset_status {
     ASET_OK = 0,
     ASET_ERR_ARGUMENT = -1,    /* a pointer, count or option is outside what the declaration allows */
@@ -67,7 +68,7 @@ typedef struct aset_material {
 typedef struct aset_light {
     aset_vec3 position; /* a point; or, if directional, the direction towards the light (any length but 0) */
     aset_colour colour; /* intensity; ignored while has_colour is false */
-    bool has_colour;    /* false: white of intensity 1 / sqrt(number of lights), the SPD's rule */
+    bool has_colour;    /* false: white of intensity 1 / sqrt(number of lights without a colour of their own), the SPD's rule */
     bool directional;
 } aset_light;
 

@@ -26,6 +26,7 @@ static void set_step(aset_flat *f) {
     }
 }
 
+#if ASET_WITH_OBJECTS
 /* The material of an object: in which parts does it differ from the first one's? */
 static void compare_parts(aset_flat *f) {
     if (f->is_first) {
@@ -146,6 +147,7 @@ static aset_status take_object(aset_flat *f, aset_vec3 low, aset_vec3 high) {
     default: return ASET_ERR_ARGUMENT;
     }
 }
+#endif
 
 /* --- the sink --- */
 

@@ -327,6 +327,7 @@ static aset_status switched_off(nff *file, const char *what) {
 }
 #endif
 
+#if ASET_WITH_OBJECTS
 /* Before an object: what it is seen by and made of. cut as in the reader. */
 static aset_status begin_object(nff *file, const char *cut) {
     file->reader.cut = cut;
@@ -338,6 +339,7 @@ static aset_status begin_object(nff *file, const char *cut) {
     }
     return ASET_OK;
 }
+#endif
 
 #if ASET_WITH_CONES
 static aset_status read_cone(nff *file) {

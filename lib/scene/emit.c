@@ -19,6 +19,7 @@ static aset_status emit_outline(const aset_sink *sink, const shape *s, aset_real
 
 /* per_scale: from the scene's own lengths to the caller's. */
 static aset_status emit_object(const aset_sink *sink, const shape *s, aset_real per_scale) {
+    (void)sink, (void)per_scale; /* a library without kinds of objects */
     switch (s->kind) {
 #if ASET_WITH_POLYGONS
     case KIND_POLYGON: return emit_outline(sink, s, per_scale, false);

@@ -41,6 +41,7 @@ aset_real aset_scene_scale_for(aset_vec3 low, aset_vec3 high) {
     return largest >= SCALE_LOW || largest == 0 ? 1 : 1 / SCALE_DOWN;
 }
 
+#if ASET_WITH_OBJECTS
 static void scale_object(aset_scene *scene, uint32_t object, aset_real factor) {
     shape s = shape_of(scene, object);
     aset_real *at = scene->coordinates + scene->objects[object].first;
@@ -74,6 +75,7 @@ static void make_room(aset_scene *scene, aset_vec3 low, aset_vec3 high) {
     scene->high = scene_point(scene, high);
     scene->margin = aset_object_margin(scene->low, scene->high);
 }
+#endif
 
 static aset_status take_background(void *context, const aset_colour *colour) {
     aset_scene *scene = context;

@@ -27,6 +27,7 @@ aset_status aset_scratch_init(aset_scratch *scratch, uint32_t depth, aset_arena 
     return ASET_OK;
 }
 
+#if ASET_WITH_REFLECTION || ASET_WITH_REFRACTION
 /* A ray to be traced later; depth is the new ray's. */
 static void leave(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer, const shading *s, aset_vec3 direction,
                   aset_real weight, uint32_t depth, aset_kind kind) {
@@ -37,6 +38,7 @@ static void leave(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer,
     w->depth = (uint16_t)depth;
     w->kind = (uint16_t)kind;
 }
+#endif
 
 /* The rays that the hit sends on. Under the SPD's rules they are sent even where their weight is 0. */
 static void send_on(aset_scratch *scratch, uint32_t *n, const aset_tracer *tracer, const shading *s,
@@ -149,7 +151,7 @@ aset_colour aset_trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_ve
 /* No ray needs the space. */
 static bool always_approximate(const aset_tracer *tracer) {
 #if ASET_WITH_APPROXIMATION
-    return tracer->approx_kinds == ASET_ALL_KINDS && tracer->approx_depth == 0 && aset_query_can(tracer, true);
+    return (tracer->approx_kinds & ASET_ALL_KINDS) == ASET_ALL_KINDS && tracer->approx_depth == 0 && aset_query_can(tracer, true);
 #else
     (void)tracer;
     return false;
