@@ -515,6 +515,7 @@ static void test_draft__seams_are_closed(void **state) {
             aset_vec3 to = vec_add(centre, random_in_cube(&r, R(1.4)));
             aset_vec3 direction = aset_vec_unit(vec_sub(to, from));
             uint32_t n = aset_draft_layers(layers, &d.draft, DRAFT_PLANE, from, direction, REAL_INFINITY, &counts);
+            n = aset_draft_close_seam(layers, n, &d.draft, from, direction, &counts);
             check(n > 0, SEED ", ray %u", r.seed, k);
             through += layers[0].t > 12; /* its middle lies there */
         }

@@ -145,7 +145,7 @@ static void compare_summaries(const aset_summary *a, const aset_summary *b) {
     assert_int_equal(a->merged, b->merged);
     assert_int_equal(a->width, b->width);
     for (uint32_t i = 0; i < a->n_textures; i++) {
-        assert_true(aset_entity_same_look(a->textures + i, b->textures + i));
+        assert_true(entity_same_look(a->textures + i, b->textures + i));
     }
     compare_words("numbers", a->of_cell, b->of_cell, (size_t)ASET_BYTES_PACKED(a->space->cells.n_cells, a->width));
 }
@@ -154,7 +154,7 @@ static void compare_summaries(const aset_summary *a, const aset_summary *b) {
 static bool same_cell_hit(const aset_hit *a, const aset_hit *b) {
     aset_hit c = *b;
     c.material = a->material;
-    return same_hit(a, &c) && a->cell == b->cell && aset_entity_same_look(a->material, b->material);
+    return same_hit(a, &c) && a->cell == b->cell && entity_same_look(a->material, b->material);
 }
 
 /* Some rays of every sort. */

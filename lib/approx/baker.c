@@ -32,7 +32,7 @@ static void fit(aset_baker *b, aset_vec3 low, aset_vec3 high) {
     if (is_first) {
         b->only = b->material;
         b->n_materials = 1;
-    } else if (b->n_materials < 2 && b->is_other && !aset_entity_same_look(&b->only, &b->material)) {
+    } else if (b->n_materials < 2 && b->is_other && !entity_same_look(&b->only, &b->material)) {
         b->n_materials = 2;
     }
     b->is_other = false;

@@ -82,12 +82,15 @@ uint32_t aset_draft_query_layers(query_hit *hits, const draft_layer *met, uint32
 }
 
 static uint32_t draft_meet(query_hit *layers, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                           aset_statistics *statistics) {
+                           bool is_seen, aset_statistics *statistics) {
     draft_layer met[DRAFT_LAYERS_MAX];
     draft_counts counts;
     query_hit kept;
     aset_real end = aset_draft_query_kept(&kept, tracer->draft, origin, direction, t_max, statistics);
     uint32_t n = aset_draft_layers(met, tracer->draft, mode_of(tracer), origin, direction, end, &counts);
+    if (is_seen && !tracer->draft_sides) { /* what mirrors show is not worth the time */
+        n = aset_draft_close_seam(met, n, tracer->draft, origin, direction, &counts);
+    }
     statistics->cells_visited += counts.cells;
     statistics->nonempty_visited += counts.nonempty;
     statistics->approx_hits += n > 0;

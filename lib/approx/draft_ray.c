@@ -38,8 +38,8 @@ static bool send(way *w, const aset_draft *draft, draft_mode mode, aset_vec3 ori
     return done;
 }
 
-static uint32_t meet_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
-                            aset_vec3 direction, aset_real t_max, draft_counts *counts) {
+uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
+                           aset_vec3 direction, aset_real t_max, draft_counts *counts) {
     way w;
     (void)send(&w, draft, mode, origin, direction, t_max, t_max, layers, counts);
     for (uint32_t i = 0; i < w.cover.n; i++) {
@@ -64,7 +64,7 @@ uint32_t aset_draft_close_seam(draft_layer layers[DRAFT_LAYERS_MAX], uint32_t n,
         for (int a = 0; a < 3; a++) {
             o[a] += a != longest ? (aset_real)side * SEAM_BESIDE * draft->size[a] : 0;
         }
-        uint32_t n_met = meet_layers(met, draft, DRAFT_PLANE, vec(o[0], o[1], o[2]), direction, t_max, &more);
+        uint32_t n_met = aset_draft_layers(met, draft, DRAFT_PLANE, vec(o[0], o[1], o[2]), direction, t_max, &more);
         counts->cells += more.cells;
         counts->nonempty += more.nonempty;
         if (n_met > 0 && met[0].face == 0) {
@@ -74,12 +74,6 @@ uint32_t aset_draft_close_seam(draft_layer layers[DRAFT_LAYERS_MAX], uint32_t n,
         }
     }
     return n;
-}
-
-uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
-                           aset_vec3 direction, aset_real t_max, draft_counts *counts) {
-    uint32_t n = meet_layers(layers, draft, mode, origin, direction, t_max, counts);
-    return mode == DRAFT_PLANE ? aset_draft_close_seam(layers, n, draft, origin, direction, counts) : n;
 }
 
 bool aset_draft_blocks(const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max,

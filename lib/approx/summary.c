@@ -48,7 +48,7 @@ static void enter_texture(filling *f) {
     unsigned slot = aset_texture_slot(&f->sum);
     aset_material texture = aset_texture_average(&f->sum);
     uint32_t number;
-    if (f->recent.known[slot] && aset_entity_same_look(&texture, &f->recent.textures[slot])) {
+    if (f->recent.known[slot] && entity_same_look(&texture, &f->recent.textures[slot])) {
         return;
     }
     f->recent.textures[slot] = texture;

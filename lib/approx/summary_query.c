@@ -88,7 +88,8 @@ static aset_real walk_ready(probe *ray, const aset_scene *scene, aset_vec3 origi
 #endif
 
 static uint32_t summary_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                             aset_statistics *statistics) {
+                             bool is_seen, aset_statistics *statistics) {
+    (void)is_seen;
     probe ray;
     aset_real moved = walk_ready(&ray, tracer->scene, origin, direction);
     hit->near = probe_origin(&ray);
@@ -112,7 +113,7 @@ static bool summary_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 d
                         aset_statistics *statistics) {
     (void)t_last;
     query_hit hit;
-    return summary_meet(&hit, tracer, origin, direction, t_max, statistics) > 0;
+    return summary_meet(&hit, tracer, origin, direction, t_max, false, statistics) > 0;
 }
 
 static void summary_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit) {

@@ -69,7 +69,7 @@ static aset_real texture_difference(const aset_material *a, const aset_material 
 
 bool aset_texture_find(const aset_summary *summary, const aset_material *texture, uint32_t *number) {
     for (uint32_t i = 0; i < summary->n_textures; i++) {
-        if (aset_entity_same_look(summary->textures + i, texture)) {
+        if (entity_same_look(summary->textures + i, texture)) {
             *number = i;
             return true;
         }
@@ -101,7 +101,7 @@ unsigned aset_texture_slot(const texture_sum *sum) {
 uint32_t aset_texture_take(aset_summary *summary, texture_recent *recent, const texture_sum *sum) {
     unsigned slot = aset_texture_slot(sum);
     aset_material texture = aset_texture_average(sum);
-    if (recent->known[slot] && aset_entity_same_look(&texture, &recent->textures[slot])) {
+    if (recent->known[slot] && entity_same_look(&texture, &recent->textures[slot])) {
         return recent->number[slot];
     }
     uint32_t number = summary->n_textures;

@@ -58,17 +58,6 @@ aset_status aset_entity_check_material(const aset_material *material) {
     return check_amounts(material, MATERIAL_AMOUNTS);
 }
 
-bool aset_entity_same_look(const aset_material *a, const aset_material *b) {
-    aset_real p[MATERIAL_AMOUNTS], q[MATERIAL_AMOUNTS];
-    int i = 0;
-    memcpy(p, a, sizeof p);
-    memcpy(q, b, sizeof q);
-    while (i < MATERIAL_AMOUNTS && p[i] == q[i]) {
-        i++;
-    }
-    return i == MATERIAL_AMOUNTS;
-}
-
 aset_status aset_entity_use_material(aset_recent_materials *recent, uint32_t most, bool *is_new) {
     *is_new = false;
     if (!recent->has_pending) {
@@ -77,7 +66,7 @@ aset_status aset_entity_use_material(aset_recent_materials *recent, uint32_t mos
     uint32_t oldest = recent->n > ASET_RECENT ? recent->n - ASET_RECENT : 0;
     for (uint32_t k = recent->n; k > oldest; k--) {
         const aset_material *known = &recent->list[(k - 1) % ASET_RECENT];
-        if (known->one_sided == recent->pending.one_sided && aset_entity_same_look(known, &recent->pending)) {
+        if (known->one_sided == recent->pending.one_sided && entity_same_look(known, &recent->pending)) {
             recent->has_pending = false;
             recent->current = k - 1;
             return ASET_OK;

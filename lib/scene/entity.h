@@ -8,6 +8,8 @@
 #include "aset/scene.h"
 #include "base/vec.h"
 
+#include <string.h>
+
 /* The numbers of a material, which stand one beside the other: all of it but the sides from which it is seen. */
 enum { MATERIAL_AMOUNTS = offsetof(aset_material, one_sided) / sizeof(aset_real) };
 
@@ -17,7 +19,21 @@ aset_status aset_entity_check_colour(const aset_colour *colour);
 aset_status aset_entity_check_material(const aset_material *material);
 
 /* Are two materials equal but for the sides from which they are seen? */
-bool aset_entity_same_look(const aset_material *a, const aset_material *b);
+INLINE_BUT_FOR_SIZE bool entity_same_look(const aset_material *a, const aset_material *b) {
+    const unsigned char *p = (const unsigned char *)a, *q = (const unsigned char *)b;
+    if (a->fill.r != b->fill.r) { /* most are told apart so, in lists that are searched */
+        return false;
+    }
+    for (const unsigned char *end = p + offsetof(aset_material, one_sided); p != end; p += sizeof(aset_real), q += sizeof(aset_real)) {
+        aset_real x, y;
+        memcpy(&x, p, sizeof x);
+        memcpy(&y, q, sizeof y);
+        if (x != y) {
+            return false;
+        }
+    }
+    return true;
+}
 
 /*
  * The current material as a number below recent->n, made current if it is pending. *is_new: it has to be stored, as number

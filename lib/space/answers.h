@@ -29,11 +29,11 @@ typedef struct query_hit {
 struct aset_answers {
     bool layered; /* meet may find more than one hit: those that cover a ray together */
     /*
-     * What a ray of unit direction meets at 0 < t < t_max, in order, until it is covered. How many: at most 1 unless layered. The
-     * first hit may be written to where there is none.
+     * What a ray of unit direction meets at 0 < t < t_max, in order, until it is covered; is_seen: nothing is between, it is an eye
+     * ray or a caller's. How many: at most 1 unless layered. The first hit may be written to where there is none.
      */
     uint32_t (*meet)(query_hit *hits, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                     aset_statistics *statistics);
+                     bool is_seen, aset_statistics *statistics);
     /*
      * Whether it meets anything at 0 < t < t_max. No cell that a draft has marked lies behind t_last, as far as the asker knows.
      */

@@ -63,7 +63,8 @@ static bool exact(exact_query *q, const aset_tracer *tracer, const probe *ray, a
 }
 
 static uint32_t exact_meet(query_hit *hit, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
-                           aset_statistics *statistics) {
+                           bool is_seen, aset_statistics *statistics) {
+    (void)is_seen;
     probe ray;
     exact_query q;
     aset_real moved = aset_approach_ready(&ray, tracer->scene, origin, direction);

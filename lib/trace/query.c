@@ -34,10 +34,10 @@ bool aset_query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 ori
                         bool approximate, aset_statistics *statistics) {
     const struct aset_answers *answers = answers_of(tracer, approximate);
     if (!answers->layered) {
-        return answers->meet(hit, tracer, origin, direction, t_max, statistics) > 0;
+        return answers->meet(hit, tracer, origin, direction, t_max, true, statistics) > 0;
     }
     query_hit layers[QUERY_LAYERS_MAX];
-    uint32_t n = answers->meet(layers, tracer, origin, direction, t_max, statistics), most = 0;
+    uint32_t n = answers->meet(layers, tracer, origin, direction, t_max, true, statistics), most = 0;
     for (uint32_t i = 1; i < n; i++) {
         most = layers[i].cover > layers[most].cover ? i : most;
     }
@@ -48,8 +48,8 @@ bool aset_query_closest(query_hit *hit, const aset_tracer *tracer, aset_vec3 ori
 }
 
 uint32_t aset_query_layers(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tracer, aset_vec3 origin,
-                           aset_vec3 direction, bool approximate, aset_statistics *statistics) {
-    return answers_of(tracer, approximate)->meet(layers, tracer, origin, direction, REAL_INFINITY, statistics);
+                           aset_vec3 direction, bool approximate, bool is_seen, aset_statistics *statistics) {
+    return answers_of(tracer, approximate)->meet(layers, tracer, origin, direction, REAL_INFINITY, is_seen, statistics);
 }
 
 bool aset_query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, bool approximate,

@@ -31,10 +31,10 @@ bool aset_query_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direc
 
 /*
  * What the ray meets, in order, until it is covered: one hit unless a draft answers. How many; the rest of the ray meets
- * nothing.
+ * nothing. is_seen: it is an eye ray (answers.h).
  */
 uint32_t aset_query_layers(query_hit layers[QUERY_LAYERS_MAX], const aset_tracer *tracer, aset_vec3 origin,
-                           aset_vec3 direction, bool approximate, aset_statistics *statistics);
+                           aset_vec3 direction, bool approximate, bool is_seen, aset_statistics *statistics);
 
 /* Point, normals and material of a hit; own is where the material of a draft's facet is put. */
 void aset_query_surface(aset_hit *surface, aset_material *own, const aset_tracer *tracer, const query_hit *hit,

@@ -135,7 +135,7 @@ aset_colour aset_trace_tree(const aset_tracer *tracer, aset_vec3 origin, aset_ve
         const query_hit *layers = known != NULL ? known->layers : found;
         uint32_t n_layers = known != NULL ? known->n
                                           : aset_query_layers(found, tracer, ray->origin, direction_of,
-                                                              aset_policy_approximate(tracer, kind, depth), statistics);
+                                                              aset_policy_approximate(tracer, kind, depth), kind == ASET_PRIMARY, statistics);
         count_ray(statistics, kind, n_layers > 0);
         if (n_layers > 0) {
             left = shade_layers(&sum, tracer, direction_of, depth, weight, layers, n_layers, scratch, &n, statistics);
