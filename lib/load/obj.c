@@ -106,7 +106,7 @@ static bool resolve(int64_t number, uint32_t count, uint32_t *index) {
 static aset_status get_corner(obj *file, aset_corner *corner) {
     int64_t point, normal;
     uint32_t index;
-    aset_real record[3];
+    aset_real record[3] = {0, 0, 0};
     const char *form = "v, v/vt, v//vn or v/vt/vn";
     if (!take_corner(file->model.reader.token, &point, &normal)) {
         return fail(file, "not a corner of a face", form);

@@ -108,7 +108,7 @@ aset_status aset_entity_sphere(aset_real at[ASET_COORDINATES_SPHERE], aset_vec3 
 #if ASET_WITH_CONES
 aset_status aset_entity_cone(aset_real at[ASET_COORDINATES_CONE], aset_vec3 *low, aset_vec3 *high, const aset_vec3 *base,
                              aset_real base_radius, const aset_vec3 *apex, aset_real apex_radius) {
-    bool finite = put_round(at, base, base_radius) & put_round(at + 4, apex, apex_radius);
+    bool finite = put_round(at, base, base_radius) && put_round(at + 4, apex, apex_radius);
     bool one_sign = (base_radius >= 0 && apex_radius >= 0) || (base_radius <= 0 && apex_radius <= 0);
     bool some = base_radius != 0 || apex_radius != 0;
     if (!finite || !one_sign || !some || !(vec_largest(vec_sub(*apex, *base)) > 0)) {
