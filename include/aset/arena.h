@@ -52,7 +52,8 @@ typedef struct aset_mark {
 
 /*
  * Starts an arena on the caller's block of size bytes, which must be aligned to ASET_ALIGN and stay valid as long as
- * anything in it is used. A size of 0 with any aligned block, or none, is allowed: every allocation of a byte then fails. ASET_ERR_ARGUMENT: no arena,
+ * anything in it is used. A size of 0 with any aligned block, or none, is allowed: every allocation of a byte then
+ * fails. ASET_ERR_ARGUMENT: no arena,
  * no block of a size above 0, or a block that is not aligned.
  *
  * Everything begins here, so here the arithmetic is looked at: ASET_ERR_ARITHMETIC if the library was compiled to fuse a * b + c
@@ -68,7 +69,10 @@ aset_status aset_arena_init(aset_arena *arena, void *block, size_t size);
  */
 void *aset_arena_alloc(aset_arena *arena, size_t bytes, aset_category category);
 
-/* True if bytes more bytes, a multiple of ASET_ALIGN, fit; else false, and missing is set. A builder asks this once for its whole need. */
+/*
+ * True if bytes more bytes, a multiple of ASET_ALIGN, fit; else false, and missing is set. A builder asks this once for its whole
+ * need.
+ */
 bool aset_arena_fits(aset_arena *arena, size_t bytes);
 
 aset_mark aset_arena_mark(const aset_arena *arena);

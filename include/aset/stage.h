@@ -37,7 +37,8 @@ aset_material aset_stage_material(void);
  *               floor of the model's own lies on it and not in it
  *   background  (0.80, 0.84, 0.90)
  *
- * A box of (almost) no extent, a point say, is taken as one of r = 128 roundings (a float's, in double too: a draft's words are floats) of its largest coordinate, or 1 at the
+ * A box of (almost) no extent, a point say, is taken as one of r = 128 roundings (a float's, in double too: a draft's words are
+ * floats) of its largest coordinate, or 1 at the
  * origin, or where r is below 10^-17 (in double 10^-150). ASET_ERR_PRECISION: between the ends of the box, on its longest axis,
  * lie fewer than 64 of the numbers that its largest coordinate has for neighbours, and not none at all, as aset_space_measure has it;
  * ASET_ERR_ARGUMENT: low above high, an aspect that is not above 0 and finite; ASET_ERR_UNSUPPORTED: a ground in a library without polygons; else the sink's answer, which is ASET_ERR_GEOMETRY for a box so far out or so large that the

@@ -29,8 +29,8 @@ typedef struct aset_tracer {
     uint32_t approx_depth; /* rays of this depth and deeper are approximate; the eye ray has depth 0, its reflected ray 1,
                               a shadow ray the depth of the ray whose hit it lights. 1 is the paper's setting */
     /*
-     * Trapped rays (the paper's footnote 8; of a summary's cells, not a draft's): an approximate ray that meets a cell after less than this fraction of a voxel's
-     * diagonal is ended; it returns the background, a shadow ray counts as lit. 0, or less, or not a number: never; INFINITY:
+     * Trapped rays (the paper's footnote 8; of a summary's cells, not a draft's): an approximate ray that meets a cell after less
+     * than this fraction of a voxel's diagonal is ended; it returns the background, a shadow ray counts as lit. 0, or less, or not a number: never; INFINITY:
      * always. curtail_more turns the test around, to the letter of the footnote.
      */
     aset_real curtail;

@@ -22,8 +22,10 @@ typedef double aset_real;
 /* Private: what answers rays for a space, a summary or a draft. */
 struct aset_answers;
 
-/* What a call says. 0 is success; everything else is negative and leaves the objects it was given as they were,
- * but for a call's own output that it begins with clearing: aset_baker_init's baker and aset_flat_init's flat. */
+/*
+ * What a call says. 0 is success; everything else is negative and leaves the objects it was given as they were, but for what a
+ * call begins with clearing: aset_baker_init its baker, aset_flat_init its flat.
+ */
 typedef enum aset_status {
     ASET_OK = 0,
     ASET_ERR_ARGUMENT = -1,    /* a pointer, count or option is outside what the declaration allows */

@@ -65,7 +65,7 @@ bool aset_draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words) {
 /* Facets a voxel, on average: of single surfaces there are 1.0 to 2.8, where several small things share voxels 3.3 to 4.6. */
 #define SEAM_FACETS 3u
 
-void aset_draft_look(aset_draft *draft) {
+void aset_draft_bind_marks(aset_draft *draft) {
     uint64_t voxels = 0;
     for (uint32_t b = 0; b < draft->n_blocks; b++) {
         voxels += bits_count(draft_marks(draft, b));
@@ -399,7 +399,7 @@ aset_status aset_draft_open(aset_draft *draft, const uint32_t *words, size_t n_w
             return ASET_ERR_UNSUPPORTED;
         }
     }
-    aset_draft_look(&opened);
+    aset_draft_bind_marks(&opened);
     aset_mark mark = aset_arena_mark(arena);
     aset_status status = make_stage(&opened, arena);
     if (status != ASET_OK) {

@@ -541,7 +541,7 @@ aset_status aset_baker_finish(aset_draft *draft, aset_baker *baker) {
     }
     memset(draft, 0, sizeof *draft);
     (void)aset_draft_bind(draft, take_words(baker, baker->n_words), baker->n_words);
-    aset_draft_look(draft);
+    aset_draft_bind_marks(draft);
     baker->phase = PHASE_FAILED;
     aset_status status = read_again(&draft->stage, draft, &baker->stage);
     if (status != ASET_OK) {

@@ -189,7 +189,7 @@ static inline void draft_find_facets(const aset_draft *draft, uint32_t block, un
 bool aset_draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words);
 
 /* Sets what follows from the marks: whether rays may close seams. */
-void aset_draft_look(aset_draft *draft);
+void aset_draft_bind_marks(aset_draft *draft);
 
 /* Gives the stage's entities to a sink. */
 aset_status aset_draft_read_stage(const aset_draft *draft, const aset_sink *sink);
