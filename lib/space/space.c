@@ -122,7 +122,7 @@ static aset_status measure_to_fit(aset_space_size *size, const aset_scene *scene
 aset_status aset_space_build(aset_space *space, const aset_scene *scene, const aset_method *method,
                              const aset_space_options *options, aset_arena *arena) {
     aset_space_size size;
-    bool is_auto;
+    bool is_auto = false;
     if (space == NULL || scene == NULL || method == NULL || arena == NULL) {
         return ASET_ERR_ARGUMENT;
     }
