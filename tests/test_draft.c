@@ -473,12 +473,12 @@ static void test_draft__layers_are_in_order_and_cover_once(void **state) {
         bake_model(&d, &r, 150, false, 14, 15, 16, true);
         for (int k = 0; k < 4000; k++) {
             draft_layer layers[DRAFT_LAYERS_MAX];
-            draft_counts counts;
+            draft_counts counts = {0, 0};
             aset_vec3 from = random_in_cube(&r, 8), to = random_in_cube(&r, 4);
             aset_vec3 direction = aset_vec_unit(vec_sub(to, from));
             aset_real t_max = k % 3 == 0 ? (aset_real)random_between(&r, 0, 12) : REAL_INFINITY, before = 0, sum = 0;
             draft_mode mode = k % 5 == 0 ? DRAFT_SIDE : DRAFT_PLANE;
-            uint32_t n = aset_draft_layers(layers, &d.draft, mode, from, direction, t_max, &counts);
+            uint32_t n = aset_draft_layers(layers, &d.draft, mode, from, direction, t_max, &counts).n;
             assert_true(n <= DRAFT_LAYERS_MAX);
             for (uint32_t l = 0; l < n; l++) {
                 check(layers[l].t >= before && layers[l].t > 0 && layers[l].t < t_max, SEED ", ray %d", r.seed, k);
@@ -510,19 +510,95 @@ static void test_draft__seams_are_closed(void **state) {
         bake(&d, &m, 24, 24, 24, true);
         for (uint32_t k = 0; k < 10000; k++) {
             draft_layer layers[DRAFT_LAYERS_MAX];
-            draft_counts counts;
+            draft_counts counts = {0, 0};
             aset_vec3 from = vec_add(centre, vec_scale(aset_vec_unit(random_in_cube(&r, 1)), 12));
             aset_vec3 to = vec_add(centre, random_in_cube(&r, R(1.4)));
             aset_vec3 direction = aset_vec_unit(vec_sub(to, from));
-            uint32_t n = aset_draft_layers(layers, &d.draft, DRAFT_PLANE, from, direction, REAL_INFINITY, &counts);
-            n = aset_draft_close_seam(layers, n, &d.draft, from, direction, &counts);
-            check(n > 0, SEED ", ray %u", r.seed, k);
+            draft_cover met = aset_draft_layers(layers, &d.draft, DRAFT_PLANE, from, direction, REAL_INFINITY, &counts);
+            aset_draft_close_seam(&met, &d.draft, from, direction, REAL_INFINITY, &counts);
+            check(met.n > 0, SEED ", ray %u", r.seed, k);
             through += layers[0].t > 12; /* its middle lies there */
         }
         drawn_close(&d);
         model_free(&m);
     }
     check(through <= 3, "%u rays", through);
+}
+
+/* A rough sheet of triangles over -3 to 3, but for a slit of the width about x = 0. */
+static void rough_sheet(model *m, random_state *r, aset_real slit) {
+    enum { N = 12 };
+    aset_vec3 at[N + 1][N + 1];
+    for (int i = 0; i <= N; i++) {
+        for (int j = 0; j <= N; j++) {
+            aset_real x = i < N / 2 ? -slit / 2 - R(0.5) * (aset_real)(N / 2 - 1 - i) : slit / 2 + R(0.5) * (aset_real)(i - N / 2);
+            at[i][j] = vec(x, R(0.5) * (aset_real)(j - N / 2), (aset_real)random_between(r, -0.4, 0.4));
+        }
+    }
+    for (int i = 0; i < N; i++) {
+        for (int j = 0; j < N && (i != N / 2 - 1 || !(slit > 0)); j++) {
+            const aset_vec3 one[3] = {at[i][j], at[i + 1][j], at[i][j + 1]}, other[3] = {at[i + 1][j], at[i + 1][j + 1], at[i][j + 1]};
+            model_polygon(m, one, NULL, 3);
+            model_polygon(m, other, NULL, 3);
+        }
+    }
+}
+
+/*
+ * n slanting rays through a sheet with nothing behind: what is left, before seams are closed and after, of all those together that met
+ * something, and of those that did not.
+ */
+static double rays_left(double *left_after, double *missed, const aset_draft *draft, random_state *r, aset_real half, uint32_t n) {
+    double left = 0;
+    *left_after = *missed = 0;
+    for (uint32_t k = 0; k < n; k++) {
+        draft_layer layers[DRAFT_LAYERS_MAX];
+        draft_counts counts = {0, 0};
+        aset_vec3 to = {(aset_real)random_between(r, -(double)half, (double)half), (aset_real)random_between(r, -2, 2), 0};
+        aset_vec3 from = vec_add(to, vec(half < 1 ? 0 : (aset_real)random_between(r, -6, 6), (aset_real)random_between(r, -6, 6), 9));
+        aset_vec3 direction = aset_vec_unit(vec_sub(to, from));
+        draft_cover met = aset_draft_layers(layers, draft, DRAFT_PLANE, from, direction, REAL_INFINITY, &counts);
+        const aset_real before = met.left;
+        aset_real sum = 0;
+        bool misses = met.n == 0;
+        left += misses ? 0 : (double)before;
+        *missed += misses;
+        aset_draft_close_seam(&met, draft, from, direction, REAL_INFINITY, &counts);
+        for (uint32_t i = 0; i < met.n; i++) {
+            sum += layers[i].cover;
+        }
+        check(met.left <= before && real_abs(sum + met.left - 1) <= 4 * REAL_UNIT, SEED ", ray %u: %g", r->seed, k, (double)sum);
+        *left_after += misses ? 0 : (double)met.left;
+        check(!misses || met.n == 0, SEED ", ray %u", r->seed, k);
+    }
+    return left;
+}
+
+/* Most of what rays leave that pass a sheet's facets in part is closed; nothing is in a slit of three columns. */
+static void test_draft__gaps_are_seams_or_gaps(void **state) {
+    (void)state;
+    double left = 0, left_after = 0;
+    for (uint64_t i = 0; i < 4; i++) {
+        random_state r = random_start(seed_of(350 + i));
+        double after, missed;
+        model whole, slit;
+        drawn d;
+        model_start(&whole);
+        rough_sheet(&whole, &r, 0);
+        bake(&d, &whole, 24, 24, 8, true);
+        left += rays_left(&after, &missed, &d.draft, &r, 2, 10000);
+        left_after += after;
+        drawn_close(&d);
+        model_free(&whole);
+        model_start(&slit);
+        rough_sheet(&slit, &r, R(0.19)); /* a column is about 6 / 24 / 4 */
+        bake(&d, &slit, 24, 24, 8, true);
+        assert_true(d.draft.closes_seams);
+        check(rays_left(&after, &missed, &d.draft, &r, R(0.005), 1000) == 0 && missed == 1000, SEED ", %g", r.seed, missed);
+        drawn_close(&d);
+        model_free(&slit);
+    }
+    check(left > 100 && left_after <= left / 4, "%g rays of %g", left_after, left);
 }
 
 /*
@@ -628,18 +704,18 @@ static void test_draft__shadow_rays_side_by_side(void **state) {
         }
         uint32_t expected = 0;
         for (uint32_t k = 0; k < DRAFT_BEAM; k++) {
-            draft_counts alone, beside;
+            draft_counts alone = {0, 0}, beside = {0, 0};
             bool a = aset_draft_blocks(&d.draft, DRAFT_PLANE, origins[k], directions[k], s.t_max[k], t_last[k], &alone);
             bool b = aset_draft_shadows_send(&s, &d.draft, o, u, UINT32_C(1) << k, &beside) != 0;
             check(a == b && alone.nonempty == beside.nonempty && beside.cells <= alone.cells,
-                  SEED ": ray %u: %d %d, %" PRIu64 " %" PRIu64 " voxels, %" PRIu64 " %" PRIu64 " cells", r.seed, k, a, b,
+                  SEED ": ray %u: %d %d, %" PRIu32 " %" PRIu32 " voxels, %" PRIu32 " %" PRIu32 " cells", r.seed, k, a, b,
                   alone.nonempty, beside.nonempty, alone.cells, beside.cells);
             expected |= (uint32_t)a << k;
             blocked += a;
             cells += alone.cells;
             together += beside.cells;
         }
-        draft_counts all;
+        draft_counts all = {0, 0};
         check(aset_draft_shadows_send(&s, &d.draft, o, u, 0xffff, &all) == (expected & 0xffff), SEED ": of all %x", r.seed, expected);
         if (i % 100 == 99) {
             drawn_close(&d);
@@ -1485,6 +1561,7 @@ int main(void) {
         cmocka_unit_test(test_draft__garbage),
         cmocka_unit_test(test_draft__layers_are_in_order_and_cover_once),
         cmocka_unit_test(test_draft__seams_are_closed),
+        cmocka_unit_test(test_draft__gaps_are_seams_or_gaps),
         cmocka_unit_test(test_draft__any_agrees_with_closest),
         cmocka_unit_test(test_draft__shadow_rays_ignore_the_voxel_that_they_start_in),
 #if DRAFT_SHADES_BEAMS

@@ -66,7 +66,7 @@ bool aset_draft_bind(aset_draft *draft, const uint32_t *words, size_t n_words) {
 #define SEAM_FACETS 3u
 
 void aset_draft_bind_marks(aset_draft *draft) {
-    uint64_t voxels = 0;
+    uint32_t voxels = 0; /* ASET_BAKE_DIVISIONS_MAX to the third at most */
     for (uint32_t b = 0; b < draft->n_blocks; b++) {
         voxels += bits_count(draft_marks(draft, b));
     }
@@ -133,7 +133,7 @@ static const char *check_blocks(const aset_draft *d) {
         return "a draft whose map of blocks contradicts itself";
     }
     for (uint32_t b = 0; b < d->n_blocks; b++) {
-        uint32_t voxels = bits_count((uint64_t)d->marks[2 * b] | (uint64_t)d->marks[2 * b + 1] << 32);
+        uint32_t voxels = bits_count(draft_marks(d, b));
         uint32_t end = b + 1 < d->n_blocks ? d->first[b + 1] : d->n_facets;
         if (d->first[b] != next || end <= next || end > d->n_facets || !starts_bit(d->starts, next)) {
             return "a draft whose blocks have no facets";

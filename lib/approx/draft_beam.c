@@ -199,7 +199,7 @@ DRAFT_WORK bool visit(draft_beam *beam, const uint32_t at[3], uint32_t dense, un
         return false;
     }
     const aset_real middle[3] = {low[0] + 2, low[1] + 2, low[2] + 2};
-    beam->n_visited += (uint64_t)n_all;
+    beam->n_visited += (uint32_t)n_all;
     draft_find_facets(beam->draft, dense, bits_count(draft_marks(beam->draft, dense) & ((UINT64_C(1) << k) - 1)), &first, &end);
     for (uint32_t f = 0; f < end - first; f++) {
         plane p;

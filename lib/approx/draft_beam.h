@@ -18,7 +18,7 @@ typedef struct draft_beam {
     draft_cover cover[DRAFT_BEAM];
     draft_layer layers[DRAFT_BEAM][DRAFT_LAYERS_MAX];
     uint32_t n_left;    /* rays that are not done */
-    uint64_t n_visited; /* voxels, of all rays */
+    uint32_t n_visited; /* voxels, of all rays */
 } draft_beam;
 
 /* The first n of DRAFT_BEAM rays of unit direction (the others only fill the arrays), which meet facets at 0 < t < t_max. */

@@ -28,12 +28,6 @@ typedef struct draft_meeting {
     bool away; /* it faces away from the ray's origin */
 } draft_meeting;
 
-typedef struct draft_cover {
-    draft_layer *layers;
-    uint32_t n;
-    aset_real left; /* of the ray, uncovered */
-} draft_cover;
-
 static inline draft_cover draft_cover_of(draft_layer *layers) {
     draft_cover c = {layers, 0, 1};
     return c;

@@ -58,48 +58,47 @@ aset_real aset_draft_query_kept(query_hit *hit, const aset_draft *draft, aset_ve
 
 #endif
 
-uint32_t aset_draft_query_layers(query_hit *hits, const draft_layer *met, uint32_t n, aset_vec3 origin,
-                                 const query_hit *kept, bool has_kept) {
-    aset_real left = 1;
+uint32_t aset_draft_query_layers(query_hit *hits, const draft_cover *met, aset_vec3 origin, const query_hit *kept, bool has_kept) {
+    uint32_t n = met->n;
     for (uint32_t i = 0; i < n; i++) {
         query_hit *hit = hits + i;
-        hit->t = hit->t_near = met[i].t;
+        const draft_layer *layer = met->layers + i;
+        hit->t = hit->t_near = layer->t;
         hit->near = origin;
         hit->object = ASET_NO_OBJECT;
-        hit->cell = met[i].facet;
-        hit->face = met[i].face;
+        hit->cell = layer->facet;
+        hit->face = layer->face;
         hit->curtailed = false;
-        hit->cover = met[i].cover;
+        hit->cover = layer->cover;
         hit->scene = NULL;
         hit->by = &aset_draft_answers;
-        left -= met[i].cover;
     }
-    if (has_kept && left > 0) {
+    if (has_kept && met->left > 0) {
         hits[n] = *kept;
-        hits[n++].cover = left;
+        hits[n++].cover = met->left;
     }
     return n;
 }
 
-static uint32_t draft_meet(query_hit *layers, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+static uint32_t draft_meet(query_hit *hits, const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                            bool is_seen, aset_statistics *statistics) {
-    draft_layer met[DRAFT_LAYERS_MAX];
-    draft_counts counts;
+    draft_layer layers[DRAFT_LAYERS_MAX];
+    draft_counts counts = {0, 0};
     query_hit kept;
     aset_real end = aset_draft_query_kept(&kept, tracer->draft, origin, direction, t_max, statistics);
-    uint32_t n = aset_draft_layers(met, tracer->draft, mode_of(tracer), origin, direction, end, &counts);
+    draft_cover met = aset_draft_layers(layers, tracer->draft, mode_of(tracer), origin, direction, end, &counts);
     if (is_seen && !tracer->draft_sides) { /* what mirrors show is not worth the time */
-        n = aset_draft_close_seam(met, n, tracer->draft, origin, direction, &counts);
+        aset_draft_close_seam(&met, tracer->draft, origin, direction, end, &counts);
     }
     statistics->cells_visited += counts.cells;
     statistics->nonempty_visited += counts.nonempty;
-    statistics->approx_hits += n > 0;
-    return aset_draft_query_layers(layers, met, n, origin, &kept, end < t_max);
+    statistics->approx_hits += met.n > 0;
+    return aset_draft_query_layers(hits, &met, origin, &kept, end < t_max);
 }
 
 static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, aset_real t_last,
                       aset_statistics *statistics) {
-    draft_counts counts;
+    draft_counts counts = {0, 0};
     query_hit kept;
     if (aset_draft_query_kept(&kept, tracer->draft, origin, direction, t_max, statistics) < t_max) {
         return true;

@@ -16,8 +16,9 @@ typedef struct draft_layer {
     int face; /* by side: through which the voxel was entered, axis * 2, + 1 going down; for a facet's plane: 1 if it faces away */
 } draft_layer;
 
+/* Of a ray, or of a beam's: a ray crosses no more than 3 x ASET_BAKE_DIVISIONS_MAX slices. What takes them adds to them. */
 typedef struct draft_counts {
-    uint64_t cells, nonempty;
+    uint32_t cells, nonempty;
 } draft_counts;
 
 /*
@@ -26,21 +27,31 @@ typedef struct draft_counts {
  */
 typedef enum draft_mode { DRAFT_PLANE, DRAFT_SIDE } draft_mode;
 
-/*
- * The layers that a ray of unit direction meets at 0 < t < t_max, in order; how many. Where the sum of their covers is less than
- * 1 the rest of the ray goes on behind t_max or leaves the box.
- */
-uint32_t aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
-                           aset_vec3 direction, aset_real t_max, draft_counts *counts);
+/* The layers that a ray has met so far. */
+typedef struct draft_cover {
+    draft_layer *layers;
+    uint32_t n;
+    aset_real left; /* of the ray, uncovered: 0 where nothing behind matters */
+} draft_cover;
 
 /*
- * For a ray that has met n layers of facets' planes. Where the first one faces away the ray came to the inside of a surface, mostly
- * through a seam between two footprints: then what a ray close beside it meets well before is the one layer instead, if that faces
- * the ray. Where windings are turned, or mixed, it rarely does, and nothing changes; nor does it where voxels hold many small things,
- * which all have insides behind them. How many layers; the counts grow.
+ * What a ray of unit direction meets at 0 < t < t_max, in order, into the layers. What is left of it goes on behind t_max or leaves
+ * the box.
  */
-uint32_t aset_draft_close_seam(draft_layer layers[DRAFT_LAYERS_MAX], uint32_t n, const aset_draft *draft, aset_vec3 origin,
-                               aset_vec3 direction, draft_counts *counts);
+draft_cover aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_draft *draft, draft_mode mode, aset_vec3 origin,
+                              aset_vec3 direction, aset_real t_max, draft_counts *counts);
+
+/*
+ * For a ray that has met what it does of facets' planes before t_max. Mostly through a seam between two footprints it came
+ * - to the inside of a surface, where the first layer faces away: what one of four rays close beside it meets well before is the one
+ *   layer instead,
+ * - past a facet that covers a part of it, with some of it left: what two rays close beside it, to opposite sides, cover both is covered,
+ *   if that is more, by what the second of them meets,
+ * if that faces the ray. Where windings are turned, or mixed, it rarely does, and nothing changes; nor does it where voxels hold many
+ * small things, which all have insides and gaps between them.
+ */
+void aset_draft_close_seam(draft_cover *met, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
+                           draft_counts *counts);
 
 /*
  * Whether anything stops a shadow ray: facets that face the origin, and others beyond the origin's own surroundings, but for

@@ -200,7 +200,7 @@ DRAFT_WORK uint32_t send(draft_shadows *restrict shadows, const aset_draft *draf
                          aset_real (*restrict directions)[DRAFT_BEAM], uint32_t rays, draft_counts *counts) {
     uint32_t blocked = 0;
     way w;
-    w.counts.cells = w.counts.nonempty = 0;
+    w.counts = *counts;
     set_out(shadows, draft, origins, directions);
     for (; rays != 0; rays &= rays - 1) {
         uint32_t i = bits_lowest(rays);

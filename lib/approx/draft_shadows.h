@@ -33,7 +33,7 @@ typedef struct draft_shadows {
 
 /*
  * Those of the rays asked for, each a bit, of which aset_draft_blocks would say that something stops them. All have unit directions;
- * t_max and t_last are set, t_last is 0 for those that are not asked for. counts: of all.
+ * t_max and t_last are set, t_last is 0 for those that are not asked for. counts: grow by those of all.
  */
 uint32_t aset_draft_shadows_send(draft_shadows *restrict shadows, const aset_draft *draft, aset_real (*restrict origins)[DRAFT_BEAM],
                                  aset_real (*restrict directions)[DRAFT_BEAM], uint32_t rays, draft_counts *counts);

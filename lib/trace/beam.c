@@ -381,10 +381,10 @@ static void meet(beam_rays *rays, query_hit *kept, const aset_beams *beams, uint
     statistics->nonempty_visited += rays->met.n_visited;
     for (uint32_t i = 0; i < n; i++) {
         draft_cover *met = &rays->met.cover[i];
-        if (met->n > 0 && met->layers[0].face != 0 && tracer->draft->closes_seams) {
+        if (tracer->draft->closes_seams && met->n > 0) {
             draft_counts counts = {0, 0};
-            met->n = aset_draft_close_seam(met->layers, met->n, tracer->draft, draft_lane(rays->origins, i),
-                                           draft_lane(rays->directions, i), &counts);
+            aset_draft_close_seam(met, tracer->draft, draft_lane(rays->origins, i), draft_lane(rays->directions, i), rays->ends[i],
+                                  &counts);
             statistics->cells_visited += counts.cells;
             statistics->nonempty_visited += counts.nonempty;
         }
@@ -398,7 +398,7 @@ static void shade_each(gathered *g, const drawing *d, beam_rays *rays, const que
         eye_hits hits;
         aset_real cover;
         aset_vec3 origin = draft_lane(rays->origins, k), direction = draft_lane(rays->directions, k);
-        hits.n = aset_draft_query_layers(hits.layers, rays->met.layers[k], rays->met.cover[k].n, origin, &kept[k],
+        hits.n = aset_draft_query_layers(hits.layers, &rays->met.cover[k], origin, &kept[k],
                                          rays->ends[k] < REAL_INFINITY);
         aset_colour c = aset_trace_tree(d->tracer, origin, direction, &hits, d->scratch, d->statistics, &cover);
         aset_drawing_gather(&g[k], c, cover);

@@ -141,7 +141,7 @@ static void find_last(aset_real *restrict last, const lighting *restrict l, cons
 
 /* Those of the rays that are asked for which meet something. */
 static uint32_t send(draft_shadows *shadows, lighting *l, const aset_draft *draft, uint32_t asked, aset_statistics *statistics) {
-    draft_counts counts;
+    draft_counts counts = {0, 0};
     uint32_t met = aset_draft_shadows_send(shadows, draft, l->start, l->direction, asked, &counts), n_met = bits_count(met);
     statistics->cells_visited += counts.cells;
     statistics->nonempty_visited += counts.nonempty;
