@@ -945,9 +945,15 @@ outputs_that_cannot_be() {
     tool scene tetra -o "$path"
     refused 1 "aset: $path: "
     tool render "$scenes/balls.nff" -s 8x8 -o a.png -qo b.png
-    refused 2 "aset: --output: the picture goes to a.png already"
+    refused 2 "aset: --output: it goes to a.png already"
     tool "$scenes/balls.nff" a.png -s 8x8 -qo b.png
-    refused 2 "aset: --output: the picture goes to a.png already"
+    refused 2 "aset: --output: it goes to a.png already"
+    for words in "scene snow" "bake $scenes/balls.nff" "compare a.ppm b.ppm" "join a.ppm" "sheet a.ppm" "tables" "thumb $scenes/balls.nff" \
+        "trade $scenes/balls.nff"; do
+        # shellcheck disable=SC2086
+        tool $words -o one.png -o two.png
+        refused 2 "aset: --output: it goes to one.png already, expected no two"
+    done
     if [ -w /dev/full ]; then
         "$aset" trade "$scenes/tetra.nff" -o t --quick -s 8 --grids 4 -m mset >/dev/full 2>"$err"
         status=$?

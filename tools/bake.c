@@ -291,7 +291,7 @@ enum { OPTION_GRID = 256, OPTION_MEMORY, OPTION_NAME };
 static bool parse_option(request *r, int option) {
     settings *s = &r->settings;
     switch (option) {
-    case 'o': r->output = optarg; return true;
+    case 'o': return tool_parse_output(optarg, &r->output);
     case OPTION_GRID: return tool_parse_grid("--grid", optarg, ASET_BAKE_DIVISIONS_MAX, s->grid);
     case OPTION_MEMORY: r->has_memory = true; return tool_parse_bytes("--memory", optarg, 0, SIZE_MAX / 2, &s->memory);
     case OPTION_NAME: return parse_name(r);

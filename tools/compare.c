@@ -117,7 +117,11 @@ int command_compare(int argc, char **argv) {
     int option;
     while ((option = tool_option_next(argc, argv, "o:h", longs)) != -1) {
         switch (option) {
-        case 'o': difference_path = optarg; break;
+        case 'o':
+            if (!tool_parse_output(optarg, &difference_path)) {
+                return TOOL_USAGE;
+            }
+            break;
         case 'j': json = true; break;
         case 'h': return tool_help(help);
         default: return TOOL_USAGE;

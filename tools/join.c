@@ -265,7 +265,11 @@ int command_join(int argc, char **argv) {
     int option;
     while ((option = tool_option_next(argc, argv, "o:h", longs)) != -1) {
         switch (option) {
-        case 'o': output = optarg; break;
+        case 'o':
+            if (!tool_parse_output(optarg, &output)) {
+                return TOOL_USAGE;
+            }
+            break;
         case 'h': return tool_help(help);
         default: return TOOL_USAGE;
         }

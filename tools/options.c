@@ -128,6 +128,15 @@ int tool_option_next(int argc, char **argv, const char *shorts, const struct opt
     return '?';
 }
 
+bool tool_parse_output(const char *text, const char **path) {
+    if (*path != NULL) {
+        tool_error(NULL, 0, "--output: it goes to %s already, expected no %s", *path, text);
+        return false;
+    }
+    *path = text;
+    return true;
+}
+
 bool tool_parse_unsigned(const char *option, const char *text, uint64_t low, uint64_t high, uint64_t *value) {
     if (!read_whole(text, low, high, value)) {
         tool_error(NULL, 0, "%s: \"%s\" is not a whole number from %" PRIu64 " to %" PRIu64, option, text, low, high);

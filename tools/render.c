@@ -123,13 +123,7 @@ static bool parse_more(request *r, int option) {
 static bool parse_option(request *r, int option) {
     settings *s = &r->settings;
     switch (option) {
-    case 'o':
-        if (r->output != NULL) {
-            tool_error(NULL, 0, "--output: the picture goes to %s already, expected no %s", r->output, optarg);
-            return false;
-        }
-        r->output = optarg;
-        return true;
+    case 'o': return tool_parse_output(optarg, &r->output);
     case 'm': return parse_method(r, optarg);
     case OPTION_GRID: return tool_parse_grid("--grid", optarg, ASET_DIVISIONS_MAX, s->grid);
     case OPTION_OCTREE_DEPTH:

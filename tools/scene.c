@@ -83,12 +83,16 @@ int command_scene(int argc, char **argv) {
         {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0},
     };
-    const char *size_text = NULL, *path = "-";
+    const char *size_text = NULL, *path = NULL;
     int option;
     while ((option = tool_option_next(argc, argv, "s:o:h", longs)) != -1) {
         switch (option) {
         case 's': size_text = optarg; break;
-        case 'o': path = optarg; break;
+        case 'o':
+            if (!tool_parse_output(optarg, &path)) {
+                return TOOL_USAGE;
+            }
+            break;
         case 'h': return print_help();
         default: return TOOL_USAGE;
         }
@@ -108,5 +112,5 @@ int command_scene(int argc, char **argv) {
     if (size_text != NULL && !tool_parse_count("scene: --size", size_text, 1, scene->largest_size, &size)) {
         return TOOL_USAGE;
     }
-    return write_scene(scene, size, path);
+    return write_scene(scene, size, path != NULL ? path : "-");
 }

@@ -309,7 +309,7 @@ int command_sheet(int argc, char **argv) {
     while ((option = tool_option_next(argc, argv, "o:h", longs)) != -1) {
         bool fine = option != '?';
         switch (option) {
-        case 'o': s.output = optarg; fine = tool_picture_path_ok(optarg); break;
+        case 'o': fine = tool_parse_output(optarg, &s.output) && tool_picture_path_ok(optarg); break;
         case 'c': fine = tool_parse_count("sheet: --columns", optarg, 1, TOOL_SIDE_MAX, &s.columns); break;
         case 't': s.title = optarg; fine = text_ok("title", optarg); break;
         case 'h': return tool_help(help);

@@ -307,7 +307,7 @@ static bool parse(request *r, int argc, char **argv) {
         case 's': fine = tool_parse_count("--size", optarg, 1, SIDE_MAX, &r->side); break;
         case 'r': fine = tool_parse_count("--rounds", optarg, 0, ROUNDS_MAX, &r->rounds); break;
         case 'm': r->markdown = true; break;
-        case 'o': r->output = optarg; break;
+        case 'o': fine = tool_parse_output(optarg, &r->output); break;
         case 'q': r->quiet = true; break;
         case 'h': r->wants_help = true; return true;
         default: break;
@@ -337,7 +337,7 @@ static bool measure(table_row *rows, const request *r) {
 
 int command_tables(int argc, char **argv) {
     table_row rows[PUBLISHED_ROWS];
-    request r = {SIDE_DEFAULT, ROUNDS_DEFAULT, "-", false, false, false};
+    request r = {SIDE_DEFAULT, ROUNDS_DEFAULT, NULL, false, false, false};
     tool_output output;
     if (!parse(&r, argc, argv)) {
         return TOOL_USAGE;
@@ -345,7 +345,7 @@ int command_tables(int argc, char **argv) {
     if (r.wants_help) {
         return tool_help(help);
     }
-    if (!tool_output_open(&output, r.output)) {
+    if (!tool_output_open(&output, r.output != NULL ? r.output : "-")) {
         return TOOL_FAILED;
     }
     if (!measure(rows, &r)) {

@@ -254,7 +254,7 @@ static bool parse_size(request *r, const char *text) {
 static bool parse_option(request *r, int option) {
     uint64_t bytes;
     switch (option) {
-    case 'o': r->output = optarg; return true;
+    case 'o': return tool_parse_output(optarg, &r->output);
     case 's': return parse_size(r, optarg);
     case OPTION_MEMORY: r->memory = optarg; return tool_parse_bytes("thumb: --memory", optarg, 0, SIZE_MAX / 2, &bytes);
     case OPTION_TRANSPARENT: r->transparent = true; return true;

@@ -67,6 +67,9 @@ int tool_help(const char *text);
  */
 int tool_option_next(int argc, char **argv, const char *shorts, const struct option *longs);
 
+/* Takes where the output goes, unless it was told before (*path is not NULL): false after an error line that has both. */
+bool tool_parse_output(const char *text, const char **path);
+
 /*
  * Readers of one option's value. option is the name to say in the error line ("--size"), text the value, NULL not
  * allowed. Each is true and fills its result, or prints what is wrong and what was expected, leaves the result as it

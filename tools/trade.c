@@ -142,8 +142,7 @@ static bool parse_option(trade_words *w, int option) {
             tool_error(NULL, 0, "trade: --output: the results are files in a folder, expected its name (./- for one called -)");
             return false;
         }
-        w->directory = optarg;
-        return true;
+        return tool_parse_output(optarg, &w->directory);
     case 'm': return parse_methods(w, optarg);
     case OPTION_GRIDS: w->n_grids = 0; return parse_list(w, "--grids", optarg, parse_grid);
     case OPTION_DEPTHS: w->n_depths = 0; return parse_list(w, "--octree-depths", optarg, parse_depth);
