@@ -1075,6 +1075,8 @@ plan_takes_renders_words() {
 "set"_"6x6x6"_"primary,reflected"_1 --method set --grid 6 --approx primary,reflected --curtail 0.1 --curtail-when more --depth 2 --samples 4
 "grid"_"9x9x9"_"all"_0 --method grid --grid 9 --approx all --approx-depth 0
 "brute"_"1x1x1"_"none"_1 --method brute
+"mset"_"9x9x9"_"all"_1 --method aset --grid 9
+"mset"_"9x9x9"_"shadow"_1 --method aset --grid 9 --approx shadow
 END
     tool plan "$scene" -s 48 --memory 100 --grid 9 --approx none
     refused 1 "aset: $scene: the picture needs "
@@ -1285,6 +1287,11 @@ trade_takes_renders_words() {
     works trade "$scenes/balls.nff" -o t -m mset --grids 6 -s 24x24 --rounds 1 --depth 1 --approx-depth 0
     [ "$(awk "$trade_columns"' { print $c["approx"] $c["level"] $c["curtail"] }' t/trade.csv | xargs)" = "none all00.5 all00 all0" ] ||
         fail "other settings than all rays from depth 0"
+    works trade "$scenes/balls.nff" -o t -m aset --grids 6 -s 24x24 --rounds 1 --cells flat
+    [ "$(awk "$trade_columns"' { print $c["method"] $c["approx"] $c["level"] $c["curtail"] }' t/trade.csv | xargs)" = "msetnone msetall10.5 msetall10" ] ||
+        fail "aset is not mset with all rays from depth 1"
+    works trade "$scenes/balls.nff" -o t -m aset,grid --grids 6 -s 24x24 --rounds 1 --cells flat --approx none
+    [ "$(awk "$trade_columns"' { print $c["method"] $c["approx"] }' t/trade.csv | sort | xargs)" = "gridnone msetnone" ] || fail "aset among others"
     works trade "$scenes/balls.nff" -o t -m mset --grids 6 -s 24x24 --rounds 1 --approx none
     [ "$(wc -l <t/trade.csv)" -eq 2 ] || fail "not only the exact setting"
     works trade "$scenes/balls.nff" -o t -m mset,octree --grids 6 --octree-depth 3 --cells flat,plane -s 24x24 --rounds 1 --rules spd

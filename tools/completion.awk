@@ -14,7 +14,10 @@ function values(command, option, value) {
         return "words mset aset set grid octree arts excell brute"
     }
     if (command == "trade" && option ~ /^(-m|--methods)$/) {
-        return "words all mset set grid octree arts excell brute"
+        return "words all mset aset set grid octree arts excell brute"
+    }
+    if (command == "plan" && option ~ /^(-m|--method)$/) {
+        return "words mset aset set grid brute"
     }
     if (option == "--approx") {
         return "words all none primary shadow reflected refracted"

@@ -16,6 +16,7 @@ static const char help[] =
     "                       that holds the scene, as render does not where everything is approximate\n"
     "                       (-: to standard output, instead of the plan)\n"
     "  -m, --method NAME, --grid N                       of mset, grid, set and brute this method alone; these divisions alone\n"
+    "                                                    (aset: mset with --approx all --approx-depth 1, as for render)\n"
     "      --approx KINDS, --approx-depth L              with these rays (default all) approximate, and no others\n"
     "      --cells plane|normal                          drafts, of all rays, instead of flat cells; see below\n"
     "      --curtail F, --curtail-when W, --samples N    as for render\n"
@@ -41,7 +42,7 @@ typedef struct request {
     plan_wish wish;
     settings settings; /* the camera, and what a model gets */
     const char *scene, *header;
-    bool all, json, wants_help;
+    bool all, json, wants_help, is_aset;
 } request;
 
 static void print_setting(const plan *p, const plan_setting *s) {
@@ -193,10 +194,12 @@ static bool plan_from(const request *r, tool_source *source) {
     return done;
 }
 
-static bool parse_method(plan_wish *w, const char *text) {
-    w->method = tool_method_find(text);
+static bool parse_method(request *r, const char *text) {
+    plan_wish *w = &r->wish;
+    r->is_aset = strcmp(text, "aset") == 0;
+    w->method = r->is_aset ? &aset_mset : tool_method_find(text);
     if (w->method != &aset_mset && w->method != &aset_grid && w->method != &aset_set && w->method != &aset_brute) {
-        tool_error(NULL, 0, "--method: a plan has no \"%s\", expected mset, grid, set or brute", text);
+        tool_error(NULL, 0, "--method: a plan has no \"%s\", expected mset, aset, grid, set or brute", text);
         return false;
     }
     return true;
@@ -205,7 +208,7 @@ static bool parse_method(plan_wish *w, const char *text) {
 static bool parse_option(request *r, int option) {
     plan_wish *w = &r->wish;
     switch (option) {
-    case 'm': return parse_method(w, optarg);
+    case 'm': return parse_method(r, optarg);
     case 'g': return tool_parse_grid("--grid", optarg, ASET_DIVISIONS_MAX, r->settings.grid);
     case 'c': return settings_parse_cells(&r->settings, optarg);
     case 'q': return true;
@@ -245,6 +248,7 @@ static bool parse_request(request *r, int argc, char **argv) {
             return true;
         }
     }
+    r->settings.has_approx_depth = r->settings.has_approx_depth || r->is_aset; /* all rays from 1 on, but for what other words say */
     r->wish.depth = r->settings.depth;
     r->wish.spd_rules = r->settings.spd_rules;
     if (r->settings.leaf > 0) {

@@ -21,7 +21,8 @@ static const char help[] =
     "gears:2 for size 2.\n"
     "\n"
     "  -o, --output DIR         where the results go; made if missing; default trade\n"
-    "  -m, --methods LIST       of mset,set,grid,octree,arts,excell,brute, or all; default all but brute\n"
+    "  -m, --methods LIST       of mset,set,grid,octree,arts,excell,brute, or all; default all but brute; aset: mset, and\n"
+    "                           alone with --approx all --approx-depth 1, as for render\n"
     "      --grids LIST         divisions of mset, set, grid: N, NXxNYxNZ or auto; default 16,32,64\n"
     "      --octree-depths LIST  halvings in octree, arts, excell; default 4,6\n"
     "      --cells LIST         what cells remember: flat (average textures), normal, plane (drafts); default flat,plane\n"
@@ -58,17 +59,31 @@ static const char help[] =
 
 /* --- words --- */
 
+/* Not a method: mset, and if no other is there its approximation alone. */
+#define METHOD_ASET (1u << 31)
+
 static bool parse_methods(trade_words *w, const char *text) {
-    enum { MAX = 16 };
+    enum { MAX = 17 };
     tool_word words[MAX];
     unsigned n = 0, all = 0;
-    for (; n < MAX - 2 && tool_methods[n] != NULL; n++) {
+    for (; n < MAX - 3 && tool_methods[n] != NULL; n++) {
         words[n] = (tool_word){aset_method_name(tool_methods[n]), 1u << n};
         all |= 1u << n;
     }
     words[n] = (tool_word){"all", all};
-    words[n + 1] = (tool_word){NULL, 0};
-    return tool_parse_words("--methods", text, words, &w->methods);
+    words[n + 1] = (tool_word){"aset", METHOD_ASET};
+    words[n + 2] = (tool_word){NULL, 0};
+    if (!tool_parse_words("--methods", text, words, &w->methods)) {
+        return false;
+    }
+    w->is_aset = w->methods == METHOD_ASET;
+    if ((w->methods & METHOD_ASET) != 0) {
+        for (unsigned m = 0; tool_methods[m] != NULL; m++) {
+            w->methods |= tool_methods[m] == &aset_mset ? 1u << m : 0;
+        }
+        w->methods &= ~METHOD_ASET;
+    }
+    return true;
 }
 
 static bool parse_cells(trade_words *w, const char *text) {
@@ -209,6 +224,7 @@ static bool parse_words(trade_words *w, int argc, char **argv) {
             return true;
         }
     }
+    w->settings.has_approx_depth = w->settings.has_approx_depth || w->is_aset; /* all rays from 1 on, but for what other words say */
     if (optind == argc) {
         tool_error(NULL, 0, "trade: expected at least one scene; aset trade --help tells more");
         return false;

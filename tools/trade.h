@@ -30,7 +30,7 @@ typedef struct trade_words {
     uint32_t grids[TRADE_LIST_MAX][3], depths[TRADE_LIST_MAX], sizes[TRADE_LIST_MAX][2];
     uint32_t n_grids, n_depths, n_sizes, rounds;
     settings settings; /* the camera, what models get, how rays are followed, and the memory if has_memory */
-    bool has_memory, quick, quiet, wants_help;
+    bool has_memory, quick, quiet, wants_help, is_aset;
 } trade_words;
 
 /* What every repetition of a setting gives alike. */
