@@ -200,7 +200,7 @@ typedef struct aset_space {
     aset_references references;
     aset_large *large; /* MSET, SET: sorted by object */
     uint32_t n_large;
-    uint32_t reach[3]; /* voxels that the largest other box spans */
+    uint32_t reach;    /* voxels that the largest other box spans on any axis */
     aset_box *boxes;   /* all others: of every object */
     uint32_t *nodes;   /* octree, ARTS */
     uint32_t depth;    /* of the tree; EXCELL: halvings of the directory */

@@ -60,9 +60,6 @@ static bool approximate_hit(query_hit *hit, const aset_tracer *tracer, const pro
 }
 
 #if ASET_FUSED
-/* Below this a component of a unit direction moves a ray by less than any margin: as aset_probe_make's. */
-#define STILL R(8.7e-19)
-
 static inline void walk_axis(probe *ray, int a, aset_real origin, aset_real direction) {
     ray->moves[a] = real_abs(direction) > STILL;
     ray->inverse[a] = ray->moves[a] ? 1 / direction : 0;

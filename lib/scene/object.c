@@ -1,9 +1,6 @@
 /* object.c - one object of any kind against a ray: dispatch, and the box that bounds every accepted hit. */
 #include "scene/shape.h"
 
-/* Below this a component of a unit direction moves a ray by less than any margin: 2^-60 against margins of 2^-21. */
-#define STILL R(8.7e-19)
-
 probe aset_probe_make(aset_vec3 origin, aset_vec3 direction) {
     probe ray = {{origin.x, origin.y, origin.z}, {direction.x, direction.y, direction.z}, {0, 0, 0}, {false, false, false},
                  {0, 1, 2}, {0, 0, 0}};

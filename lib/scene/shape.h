@@ -20,8 +20,11 @@ enum { KIND_POLYGON, KIND_PATCH, KIND_SPHERE, KIND_CONE, KIND_BITS = 3 };
 /* Which sides of a surface are seen. */
 enum { SIDE_FRONT = 1, SIDE_BACK = 2, SIDE_BOTH = 3 };
 
+/* Below this a component of a unit direction moves a ray by less than any margin: 2^-60 against margins of 2^-21. */
+#define STILL R(8.7e-19)
+
 /*
- * A ray made ready. Its direction is of unit length here. inverse is 1 / d, or 0 where |d| is so small (below 2^-60) that
+ * A ray made ready. Its direction is of unit length here. inverse is 1 / d, or 0 where |d| is so small (STILL) that
  * the ray does not leave the margin of any box along that axis: there moves is false. axis and shear serve the polygons: the
  * ray's largest component comes last, and shearing by shear makes the ray run along it (Woop, Benthin and Wald 2013).
  */

@@ -89,7 +89,7 @@ static void find_large(aset_space *space) {
             }
         }
     }
-    space->reach[0] = space->reach[1] = space->reach[2] = rest;
+    space->reach = rest;
 }
 
 void aset_sides_build(aset_space *space, const aset_space_size *size, aset_arena *arena) {
@@ -158,8 +158,9 @@ static aset_real visit_cell(const aset_space *space, walk_request *walk, walk_ce
 /* Where an exact walk from inside begins: at the edge of the window around the origin's voxel. */
 static voxel_box window_around(const aset_space *space, const int32_t voxel[3]) {
     voxel_box window;
+    int32_t reach = (int32_t)space->reach - 1;
     for (int a = 0; a < 3; a++) {
-        int32_t reach = (int32_t)space->reach[a] - 1, last = (int32_t)space->slices.n[a] - 1;
+        int32_t last = (int32_t)space->slices.n[a] - 1;
         window.low[a] = voxel[a] > reach ? voxel[a] - reach : 0;
         window.high[a] = last - voxel[a] > reach ? voxel[a] + reach : last;
     }
