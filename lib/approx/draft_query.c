@@ -58,7 +58,7 @@ aset_real aset_draft_query_kept(query_hit *hit, const aset_draft *draft, aset_ve
 
 #endif
 
-uint32_t aset_draft_query_layers(query_hit *hits, const draft_cover *met, aset_vec3 origin, const query_hit *kept, bool has_kept) {
+uint32_t aset_draft_query_layers(query_hit *hits, const draft_cover *met, aset_vec3 origin, const query_hit *kept) {
     uint32_t n = met->n;
     for (uint32_t i = 0; i < n; i++) {
         query_hit *hit = hits + i;
@@ -73,7 +73,7 @@ uint32_t aset_draft_query_layers(query_hit *hits, const draft_cover *met, aset_v
         hit->scene = NULL;
         hit->by = &aset_draft_answers;
     }
-    if (has_kept && met->left > 0) {
+    if (kept != NULL && met->left > 0) {
         hits[n] = *kept;
         hits[n++].cover = met->left;
     }
@@ -93,7 +93,7 @@ static uint32_t draft_meet(query_hit *hits, const aset_tracer *tracer, aset_vec3
     statistics->cells_visited += counts.cells;
     statistics->nonempty_visited += counts.nonempty;
     statistics->approx_hits += met.n > 0;
-    return aset_draft_query_layers(hits, &met, origin, &kept, end < t_max);
+    return aset_draft_query_layers(hits, &met, origin, ASET_WITH_OBJECTS && end < t_max ? &kept : NULL);
 }
 
 static bool draft_any(const aset_tracer *tracer, aset_vec3 origin, aset_vec3 direction, aset_real t_max, aset_real t_last,

@@ -11,8 +11,8 @@
 aset_real aset_draft_query_kept(query_hit *hit, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction,
                                 aset_real t_max, aset_statistics *statistics);
 
-/* The layers that a ray met, and behind them the kept object if there is one, as hits. How many. */
-uint32_t aset_draft_query_layers(query_hit *hits, const draft_cover *met, aset_vec3 origin, const query_hit *kept, bool has_kept);
+/* The layers that a ray met, and behind them the kept object if there is one (NULL: none), as hits. How many. */
+uint32_t aset_draft_query_layers(query_hit *hits, const draft_cover *met, aset_vec3 origin, const query_hit *kept);
 
 #endif
 #endif

@@ -398,8 +398,7 @@ static void shade_each(gathered *g, const drawing *d, beam_rays *rays, const que
         eye_hits hits;
         aset_real cover;
         aset_vec3 origin = draft_lane(rays->origins, k), direction = draft_lane(rays->directions, k);
-        hits.n = aset_draft_query_layers(hits.layers, &rays->met.cover[k], origin, &kept[k],
-                                         rays->ends[k] < REAL_INFINITY);
+        hits.n = aset_draft_query_layers(hits.layers, &rays->met.cover[k], origin, rays->ends[k] < REAL_INFINITY ? &kept[k] : NULL);
         aset_colour c = aset_trace_tree(d->tracer, origin, direction, &hits, d->scratch, d->statistics, &cover);
         aset_drawing_gather(&g[k], c, cover);
     }
