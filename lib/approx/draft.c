@@ -164,8 +164,10 @@ static const char *check_marks(const aset_draft *d) {
         }
         for (uint64_t marks = draft_marks(d, dense++); marks != 0; marks &= marks - 1) {
             unsigned k = bits_lowest(marks);
-            if (at[0] + k % 4 >= d->n[0] || at[1] + k / 4 % 4 >= d->n[1] || at[2] + k / 16 >= d->n[2]) {
-                return "a draft with voxels beyond its divisions";
+            for (int a = 0; a < 3; a++, k >>= 2) {
+                if (at[a] + (k & 3u) >= d->n[a]) {
+                    return "a draft with voxels beyond its divisions";
+                }
             }
         }
     }
