@@ -58,13 +58,16 @@ static inline uint32_t bits_get(const uint64_t *words, unsigned width, size_t in
     return (uint32_t)(value & ((UINT64_C(1) << width) - 1));
 }
 
+/* By masks, not as a change of what is there: that may be memory nobody has set. */
 static inline void bits_put(uint64_t *words, unsigned width, size_t index, uint32_t value) {
     size_t bit = index * width;
     unsigned shift = (unsigned)(bit & 63);
-    uint64_t change = bits_get(words, width, index) ^ value; /* as a change: so no masks are needed */
-    words[bit >> 6] ^= change << shift;
+    uint64_t mask = (UINT64_C(1) << width) - 1;
+    uint64_t *word = words + (bit >> 6);
+    word[0] = (word[0] & ~(mask << shift)) | (uint64_t)value << shift;
     if (shift + width > 64) {
-        words[(bit >> 6) + 1] ^= change >> (64 - shift);
+        unsigned done = 64 - shift;
+        word[1] = (word[1] & ~(mask >> done)) | (uint64_t)value >> done;
     }
 }
 
