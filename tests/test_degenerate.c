@@ -219,7 +219,9 @@ static void ask(bench *b, const aset_ray *ray, bool approximate) {
     memset(&any, 0, sizeof any);
     assert_int_equal(aset_closest_hit(&found, &hit, &b->tracer, ray, approximate, &closest), ASET_OK);
     assert_int_equal(aset_any_hit(&blocked, &b->tracer, ray, approximate, &any), ASET_OK);
-    check(closest.cells_visited <= b->steps_most && any.cells_visited <= b->steps_most, BENCH_TEXT ": %" PRIu64 " steps, not %" PRIu64,
+    /* a ray that came through a seam of a draft asks up to four beside it */
+    uint64_t walks_most = b->tracer.draft != NULL && b->tracer.draft->closes_seams ? 5 : 1;
+    check(closest.cells_visited <= walks_most * b->steps_most && any.cells_visited <= b->steps_most, BENCH_TEXT ": %" PRIu64 " steps, not %" PRIu64,
           BENCH_ARGS(b), closest.cells_visited, b->steps_most);
     if (found) {
         check_hit(b, ray, &hit);

@@ -118,7 +118,7 @@ typedef struct aset_statistics {
     uint64_t shadow, shadow_hit;
     uint64_t reflected, refracted, secondary_hit;
     uint64_t curtailed;        /* approximate rays ended because they were trapped (the paper's footnote 8) */
-    uint64_t cells_visited;    /* cells entered, empty ones included */
+    uint64_t cells_visited;    /* cells entered, empty ones included; by a ray at a draft's seam those of the rays beside it, too */
     uint64_t nonempty_visited; /* of these, with references (exact) or a texture (approximate) */
     uint64_t tests;            /* one object against one ray; a polygon of 144 vertices counts 1 */
     uint64_t test_hits;        /* of these, the ones that hit within the ray's bounds */
