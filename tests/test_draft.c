@@ -546,16 +546,17 @@ static void rough_sheet(model *m, random_state *r, aset_real slit) {
 
 /*
  * n slanting rays through a sheet with nothing behind: what is left, before seams are closed and after, of all those together that met
- * something, and of those that did not.
+ * something, and of those that did not. They go to places of |x| up to half_width; to a slit's, in its plane.
  */
-static double rays_left(double *left_after, double *missed, const aset_draft *draft, random_state *r, aset_real half, uint32_t n) {
+static double rays_left(double *left_after, double *missed, const aset_draft *draft, random_state *r, aset_real half_width,
+                        uint32_t n) {
     double left = 0;
     *left_after = *missed = 0;
     for (uint32_t k = 0; k < n; k++) {
         draft_layer layers[DRAFT_LAYERS_MAX];
         draft_counts counts = {0, 0};
-        aset_vec3 to = {(aset_real)random_between(r, -(double)half, (double)half), (aset_real)random_between(r, -2, 2), 0};
-        aset_vec3 from = vec_add(to, vec(half < 1 ? 0 : (aset_real)random_between(r, -6, 6), (aset_real)random_between(r, -6, 6), 9));
+        aset_vec3 to = {(aset_real)random_between(r, -(double)half_width, (double)half_width), (aset_real)random_between(r, -2, 2), 0};
+        aset_vec3 from = vec_add(to, vec(half_width < 1 ? 0 : (aset_real)random_between(r, -6, 6), (aset_real)random_between(r, -6, 6), 9));
         aset_vec3 direction = aset_vec_unit(vec_sub(to, from));
         draft_cover met = aset_draft_layers(layers, draft, DRAFT_PLANE, from, direction, REAL_INFINITY, &counts);
         const aset_real before = met.left;
@@ -575,7 +576,7 @@ static double rays_left(double *left_after, double *missed, const aset_draft *dr
 }
 
 /* Most of what rays leave that pass a sheet's facets in part is closed; nothing is in a slit of three columns. */
-static void test_draft__gaps_are_seams_or_gaps(void **state) {
+static void test_draft__seams_of_open_surfaces_are_closed(void **state) {
     (void)state;
     double left = 0, left_after = 0;
     for (uint64_t i = 0; i < 4; i++) {
@@ -1561,7 +1562,7 @@ int main(void) {
         cmocka_unit_test(test_draft__garbage),
         cmocka_unit_test(test_draft__layers_are_in_order_and_cover_once),
         cmocka_unit_test(test_draft__seams_are_closed),
-        cmocka_unit_test(test_draft__gaps_are_seams_or_gaps),
+        cmocka_unit_test(test_draft__seams_of_open_surfaces_are_closed),
         cmocka_unit_test(test_draft__any_agrees_with_closest),
         cmocka_unit_test(test_draft__shadow_rays_ignore_the_voxel_that_they_start_in),
 #if DRAFT_SHADES_BEAMS

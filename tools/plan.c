@@ -196,8 +196,7 @@ static bool plan_from(const request *r, tool_source *source) {
 
 static bool parse_method(request *r, const char *text) {
     plan_wish *w = &r->wish;
-    r->is_aset = strcmp(text, "aset") == 0;
-    w->method = r->is_aset ? &aset_mset : tool_method_find(text);
+    w->method = tool_method_find(text, &r->is_aset);
     if (w->method != &aset_mset && w->method != &aset_grid && w->method != &aset_set && w->method != &aset_brute) {
         tool_error(NULL, 0, "--method: a plan has no \"%s\", expected mset, aset, grid, set or brute", text);
         return false;

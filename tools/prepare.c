@@ -16,7 +16,11 @@
 const aset_method *const tool_methods[] = {&aset_mset, &aset_set,    &aset_grid,  &aset_octree,
                                             &aset_arts, &aset_excell, &aset_brute, NULL};
 
-const aset_method *tool_method_find(const char *name) {
+const aset_method *tool_method_find(const char *name, bool *is_aset) {
+    *is_aset = strcmp(name, "aset") == 0;
+    if (*is_aset) {
+        return &aset_mset;
+    }
     for (size_t i = 0; tool_methods[i] != NULL; i++) {
         if (strcmp(aset_method_name(tool_methods[i]), name) == 0) {
             return tool_methods[i];

@@ -193,7 +193,8 @@ aset_status tool_flatten(tool_flat *flat, tool_source *source, const aset_counte
 
 /* Every method the tool knows; ends with NULL. */
 extern const aset_method *const tool_methods[];
-const aset_method *tool_method_find(const char *name);
+/* The method of that name, NULL if there is none. is_aset: it was "aset", which is MSET with all rays from depth 1 on approximate. */
+const aset_method *tool_method_find(const char *name, bool *is_aset);
 
 /*
  * What a method takes, measured outside any budget: the scene is loaded into an arena of its own. block is to be freed.

@@ -96,8 +96,7 @@ typedef struct request {
 } request;
 
 static bool parse_method(request *r, const char *text) {
-    r->is_aset = strcmp(text, "aset") == 0;
-    const aset_method *method = r->is_aset ? &aset_mset : tool_method_find(text);
+    const aset_method *method = tool_method_find(text, &r->is_aset);
     if (method == NULL) {
         tool_error(NULL, 0, "--method: \"%s\" is no method, expected mset, aset, set, grid, octree, arts, excell or brute",
                    text);

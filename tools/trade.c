@@ -65,10 +65,11 @@ static const char help[] =
 static bool parse_methods(trade_words *w, const char *text) {
     enum { MAX = 17 };
     tool_word words[MAX];
-    unsigned n = 0, all = 0;
+    unsigned n = 0, all = 0, mset = 0;
     for (; n < MAX - 3 && tool_methods[n] != NULL; n++) {
         words[n] = (tool_word){aset_method_name(tool_methods[n]), 1u << n};
         all |= 1u << n;
+        mset |= tool_methods[n] == &aset_mset ? 1u << n : 0;
     }
     words[n] = (tool_word){"all", all};
     words[n + 1] = (tool_word){"aset", METHOD_ASET};
@@ -78,10 +79,7 @@ static bool parse_methods(trade_words *w, const char *text) {
     }
     w->is_aset = w->methods == METHOD_ASET;
     if ((w->methods & METHOD_ASET) != 0) {
-        for (unsigned m = 0; tool_methods[m] != NULL; m++) {
-            w->methods |= tool_methods[m] == &aset_mset ? 1u << m : 0;
-        }
-        w->methods &= ~METHOD_ASET;
+        w->methods = (w->methods & ~METHOD_ASET) | mset;
     }
     return true;
 }

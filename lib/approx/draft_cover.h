@@ -1,5 +1,5 @@
 /*
- * draft_cover.h - what facets lay over a ray: how much of it a footprint stops, and the layers that it has met so far.
+ * draft_cover.h - how a ray's cover (draft_ray.h) grows: how much of the ray a footprint stops, and the layers that it meets.
  *
  * The tolerances, all in columns, were chosen on bunny, gears, mount and tetra (docs/drafts.md).
  */

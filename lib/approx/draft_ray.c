@@ -27,7 +27,7 @@ static inline void way_set(way *w, aset_vec3 origin, aset_vec3 direction) {
     way_set_axis(w, 2, origin.z, direction.z);
 }
 
-/* A ray from its origin on; the rest as way_make takes it. */
+/* A ray from its origin on; the rest as way_make takes it, but that the counts grow. */
 static bool send(way *w, const aset_draft *draft, draft_mode mode, aset_vec3 origin, aset_vec3 direction, aset_real t_max, aset_real t_last,
                  draft_layer *layers, draft_counts *counts) {
     way_make(w, draft, mode, t_max, t_last, layers);
@@ -51,12 +51,12 @@ draft_cover aset_draft_layers(draft_layer layers[DRAFT_LAYERS_MAX], const aset_d
 void aset_draft_close_seam(draft_cover *met, const aset_draft *draft, aset_vec3 origin, aset_vec3 direction, aset_real t_max,
                            draft_counts *counts) {
     bool is_inside = met->n > 0 && met->layers[0].face != 0;
-    aset_real most = met->left; /* less must be left of those beside */
+    aset_real left_here = met->left; /* less must be left beside */
     if (is_inside) {
         t_max = met->layers[0].t - SEAM_DEPTH * draft->column;
-        most = t_max > 0 ? 1 : 0;
+        left_here = t_max > 0 ? 1 : 0;
     }
-    if (!draft->closes_seams || met->n == 0 || !(most > 0)) {
+    if (!draft->closes_seams || met->n == 0 || !(left_here > 0)) {
         return;
     }
     const aset_real d[3] = {real_abs(direction.x), real_abs(direction.y), real_abs(direction.z)};
@@ -72,9 +72,9 @@ void aset_draft_close_seam(draft_cover *met, const aset_draft *draft, aset_vec3 
         aset_vec3 step = {beside[0], beside[1], beside[2]};
         aset_vec3 from = is_second ? vec_sub(origin, step) : vec_add(origin, step);
         draft_cover other = aset_draft_layers(layers, draft, DRAFT_PLANE, from, direction, t_max, counts);
-        aset_real its = other.n == 0 || layers[0].face != 0 ? 1 : is_inside ? 0 : other.left;
-        left = is_second && !is_inside ? real_max(left, its) : its;
-        bool serves = left < most;
+        aset_real left_there = other.n == 0 || layers[0].face != 0 ? 1 : is_inside ? 0 : other.left;
+        left = is_second && !is_inside ? real_max(left, left_there) : left_there;
+        bool serves = left < left_here;
         if (serves && (is_second || is_inside)) {
             layers[0].cover = 1 - left;
             met->layers[0] = layers[0];
@@ -82,7 +82,7 @@ void aset_draft_close_seam(draft_cover *met, const aset_draft *draft, aset_vec3 
             met->left = left;
             return;
         }
-        if (is_second || !(is_inside || serves)) { /* the second cannot make good what the first leaves */
+        if (is_second || !(is_inside || serves)) { /* across; without the second, too, if it cannot make good what the first leaves */
             beside[longest == 0] *= -1;
             i |= 1;
         }

@@ -381,7 +381,7 @@ static void meet(beam_rays *rays, query_hit *kept, const aset_beams *beams, uint
     statistics->nonempty_visited += rays->met.n_visited;
     for (uint32_t i = 0; i < n; i++) {
         draft_cover *met = &rays->met.cover[i];
-        if (tracer->draft->closes_seams && met->n > 0) {
+        if (tracer->draft->closes_seams && met->n > 0) { /* as it asks itself: of most rays the call is saved */
             draft_counts counts = {0, 0};
             aset_draft_close_seam(met, tracer->draft, draft_lane(rays->origins, i), draft_lane(rays->directions, i), rays->ends[i],
                                   &counts);
